@@ -1,0 +1,250 @@
+#pragma once
+// The backend contract: what an algorithm may ask of a device, and what it may rely on.
+//
+// A backend is a type with a buffer, an image and a recorder. A recorder appends patterns (`map`,
+// `expand`, `expand_rings`, `draw`, and the copies between them) to a stream that the device runs
+// in order: what one pattern wrote, the next one sees. Nothing waits for the host in between.
+//
+// What holds on every backend:
+//  - Order. Output comes in input order, then strip, then triangle. Two backends' results compare
+//    element by element.
+//  - Capacity. Nothing is written past the end of a view. `expand` fills what fits, in order and in
+//    whole triangles, and reports {written, required} in a count_record on the device.
+//  - Padding. `padding::degenerate` gives every element strips() · strip_triangles() triangles in a
+//    row; those that it does not have follow, strip by strip, as triangles whose three vertices are
+//    all zero bytes. `padding::compact` leaves them out.
+//  - Errors. A recorder that cannot go on remembers the first error, ignores what follows, and
+//    gives the error at submit. A lost device answers every call with error_code::device_lost.
+//  - Misuse (a view outside its buffer, a kernel given too few images) is not an error value. It is
+//    asserted; `validated<B>` checks all of it and says what is wrong.
+//  - Objects. A buffer or an image must outlive the submission that uses it, and not the recorder.
+//    A device must outlive what it made. Nothing here is shared between threads without a lock of
+//    the caller's.
+
+#include <skybark/core/kernel.hpp>
+#include <skybark/core/result.hpp>
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace skybark {
+
+/// What a device can do, in the units that algorithms need to cut their work to size.
+struct device_limits {
+    std::uint64_t max_buffer_bytes = 0; ///< the largest view that a kernel can be given
+    std::uint64_t view_alignment = 16;  ///< offsets of views are multiples of this, bytes
+    std::uint64_t max_elements = 0;     ///< the longest range that one pattern call takes
+    std::uint32_t max_image_size = 0;   ///< the longest side of an image, pixels
+};
+
+/// Bytes that crossed between host and device since the device was made.
+struct device_traffic {
+    std::uint64_t up = 0;
+    std::uint64_t down = 0;
+};
+
+enum class image_format {
+    rgba8,    ///< four unsigned normalised bytes
+    rgba32f,  ///< four floats
+    depth32f, ///< one float: depth, and readable as the red channel afterwards
+};
+
+[[nodiscard]] constexpr std::size_t bytes_per_pixel(image_format format) noexcept {
+    return format == image_format::rgba32f ? 16 : 4;
+}
+
+struct image_description {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    image_format format = image_format::rgba8;
+};
+
+enum class padding {
+    degenerate, ///< a fixed number of triangles an element, the spare ones degenerate
+    compact,    ///< only the triangles that are there
+};
+
+/// A part of a buffer, as a kernel sees it. Empty when default-constructed.
+template <class B>
+struct buffer_view {
+    const typename B::buffer* buffer = nullptr;
+    std::uint64_t offset = 0; ///< bytes, a multiple of limits().view_alignment
+    std::uint64_t size = 0;   ///< bytes
+
+    [[nodiscard]] explicit operator bool() const noexcept { return buffer != nullptr; }
+};
+
+/// All of a buffer, or the records [first, first + count) of it.
+template <class B>
+[[nodiscard]] buffer_view<B> view(const typename B::buffer& buffer) {
+    return {&buffer, 0, buffer.size_bytes()};
+}
+template <class B, record T>
+[[nodiscard]] buffer_view<B> view(const typename B::buffer& buffer, std::uint64_t first,
+                                  std::uint64_t count) {
+    return {&buffer, first * sizeof(T), count * sizeof(T)};
+}
+
+/// One view for each buffer that kernel K names, in its order.
+template <class B, kernel K>
+using bindings = std::array<buffer_view<B>, K::buffers::size>;
+
+/// A length that only the device knows: `written` of a count_record, at most `limit`.
+template <class B>
+struct counted {
+    buffer_view<B> count;
+    std::uint32_t limit = 0;
+};
+
+/// Where `expand` puts its triangle list: 3 · K::vertex a triangle, and one count_record.
+template <class B>
+struct triangle_list {
+    buffer_view<B> vertices;
+    buffer_view<B> count;
+    padding policy = padding::compact;
+};
+
+enum class blend_mode {
+    none,
+    alpha, ///< premultiplied: source + (1 − source alpha) · destination
+};
+enum class cull_mode { none, back }; ///< front faces wind counter-clockwise
+enum class filter_mode { nearest, linear };
+enum class wrap_mode { clamp, repeat };
+
+struct draw_state {
+    bool depth_test = true; ///< nearer or equal passes
+    bool depth_write = true;
+    blend_mode blend = blend_mode::none;
+    cull_mode cull = cull_mode::none;
+};
+
+/// An image that a draw kernel reads, and how `sample` reads it (`fetch` takes texels as they are).
+template <class B>
+struct sampled_image {
+    const typename B::image* image = nullptr;
+    filter_mode filter = filter_mode::linear;
+    wrap_mode wrap = wrap_mode::clamp;
+};
+
+/// What is drawn into. Either may be absent, not both; both have the same size. Row 0 is the top.
+template <class B>
+struct draw_target {
+    const typename B::image* color = nullptr; ///< rgba8 or rgba32f
+    const typename B::image* depth = nullptr; ///< depth32f
+    std::optional<glm::vec4> clear_color;     ///< before the draw; absent: keep what is there
+    std::optional<float> clear_depth;
+};
+
+/// What is drawn: `count` vertices, or indices where there is an index buffer (32-bit), as
+/// triangles. Where `length` is given, the device's own count of triangles replaces `count`.
+template <class B>
+struct draw_geometry {
+    buffer_view<B> indices;
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+    std::uint32_t base_vertex = 0; ///< added to each index, or to each vertex number
+    buffer_view<B> length;         ///< a count_record
+};
+
+template <class B, draw_kernel K>
+using image_bindings = std::array<sampled_image<B>, K::images>;
+
+/// A backend opts in by `using backend_tag = skybark::backend_tag`, so that modelling the concept
+/// is a promise to keep the contract above and no coincidence of syntax.
+struct backend_tag {};
+
+template <class B>
+concept backend = std::same_as<typename B::backend_tag, backend_tag> &&
+    std::movable<typename B::buffer> && std::movable<typename B::image> &&
+    std::movable<typename B::recorder> &&
+    requires(B& b, const B& c, const typename B::buffer& buffer, const typename B::image& image,
+             typename B::recorder& recorder, std::uint64_t bytes, std::span<const std::byte> in,
+             std::span<std::byte> out) {
+    { c.name() } -> std::convertible_to<std::string_view>; // "cpu", "opengl", "vulkan", …
+    { c.device() } -> std::convertible_to<std::string>;    // what runs it, for reports
+    { c.limits() } -> std::convertible_to<device_limits>;
+    { c.traffic() } -> std::convertible_to<device_traffic>;
+    { buffer.size_bytes() } -> std::convertible_to<std::uint64_t>;
+    { image.description() } -> std::convertible_to<image_description>;
+    // A new buffer holds zeros; zero bytes are allowed. A new image's content is undefined.
+    { b.create_buffer(bytes) } -> std::same_as<result<typename B::buffer>>;
+    { b.create_image(image_description{}) } -> std::same_as<result<typename B::image>>;
+    // Upload, download: at once; they wait for what has been submitted.
+    { b.upload(buffer, bytes, in) } -> std::same_as<result<void>>;
+    { b.download(buffer, bytes, out) } -> std::same_as<result<void>>;
+    { b.upload(image, in) } -> std::same_as<result<void>>;
+    { b.download(image, out) } -> std::same_as<result<void>>;
+    // begin → record → submit, which hands the work to the device and waits until it is done.
+    { b.begin() } -> std::same_as<result<typename B::recorder>>;
+    { b.submit(recorder) } -> std::same_as<result<void>>;
+    // In the stream: new contents (copied when called), a copy between buffers, and labels
+    // that debuggers show.
+    {recorder.upload(buffer_view<B>{}, in)};
+    {recorder.copy(buffer_view<B>{}, buffer_view<B>{})};
+};
+
+/// Each i of a range once; or of consecutive ranges, each seeing what the ones before it wrote; or
+/// of a length that the device knows.
+template <class B, class K>
+concept maps = backend<B> && map_kernel<K> &&
+    requires(typename B::recorder& r, const K& k, bindings<B, K> b) {
+    {r.map(k, b, range{})};
+    {r.map(k, b, std::span<const range>{})};
+    {r.map(k, b, counted<B>{})};
+};
+
+/// Each element of a range becomes an ordered run of triangles in a list.
+template <class B, class K>
+concept expands = backend<B> && strip_kernel<K> &&
+    requires(typename B::recorder& r, const K& k, bindings<B, K> b) {
+    {r.expand(k, b, range{}, triangle_list<B>{})};
+    {r.expand(k, b, counted<B>{}, triangle_list<B>{})};
+};
+
+/// Each element of a range becomes ring_vertices() vertices, element after element.
+template <class B, class K>
+concept expands_rings = backend<B> && ring_kernel<K> &&
+    requires(typename B::recorder& r, const K& k, bindings<B, K> b) {
+    {r.expand_rings(k, b, range{}, buffer_view<B>{})};
+};
+
+template <class B, class K>
+concept draws = backend<B> && draw_kernel<K> &&
+    requires(typename B::recorder& r, const K& k, bindings<B, K> b, image_bindings<B, K> images) {
+    {r.draw(k, b, images, draw_geometry<B>{}, draw_target<B>{}, draw_state{})};
+};
+
+/// Records with `record(recorder)`, submits and waits.
+template <backend B, class Record>
+[[nodiscard]] result<void> run(B& device, Record&& record) {
+    auto recorder = device.begin();
+    if (!recorder) {
+        return failure(recorder.error());
+    }
+    record(*recorder);
+    return device.submit(*recorder);
+}
+
+/// A buffer with these records in it.
+template <backend B, record T>
+[[nodiscard]] result<typename B::buffer> make_buffer(B& device, std::span<const T> records) {
+    auto buffer = device.create_buffer(records.size_bytes());
+    if (!buffer) {
+        return buffer;
+    }
+    if (auto done = device.upload(*buffer, 0, std::as_bytes(records)); !done) {
+        return failure(done.error());
+    }
+    return buffer;
+}
+
+/// `records.size()` records from the start of a buffer, or from record `first`.
+template <backend B, record T>
+[[nodiscard]] result<void> read_back(B& device, const typename B::buffer& buffer,
+                                     std::span<T> records, std::uint64_t first = 0) {
+    return device.download(buffer, first * sizeof(T), std::as_writable_bytes(records));
+}
+
+} // namespace skybark

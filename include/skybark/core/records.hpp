@@ -1,0 +1,72 @@
+#pragma once
+// The records that cross between host and device. Each has the std430 layout that its GLSL twin in
+// shaders/shared/records.glsl has; the assertions below hold the two together.
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <type_traits>
+
+namespace skybark {
+
+/// A type that may lie in a device buffer: plain bytes, in whole 32-bit words.
+template <class T>
+concept record = std::is_trivially_copyable_v<T> && std::is_standard_layout_v<T> && sizeof(T) % 4 ==
+                 0;
+
+/// Consecutive elements [first, first + count) of an array.
+struct range {
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+};
+
+/// How much an `expand` wrote, and how much it would have written into a large enough buffer.
+/// In triangles. It stays on the device, where the next pattern or `draw` takes it as its length.
+struct count_record {
+    std::uint32_t written = 0;
+    std::uint32_t required = 0;
+    std::uint32_t reserved[2] = {0, 0};
+};
+static_assert(sizeof(count_record) == 16);
+
+/// A vertex of a surface that can be lit and textured.
+struct surface_vertex {
+    glm::vec3 position{0}; ///< m
+    float u = 0;           ///< texture coordinate around the branch, 0…1
+    glm::vec3 normal{0};   ///< unit, outwards
+    float v = 0;           ///< texture coordinate along the branch, m
+    glm::vec4 tangent{
+        0}; ///< xyz: unit, towards growing u; w: bitangent = w · cross(normal, tangent)
+};
+static_assert(sizeof(surface_vertex) == 48);
+static_assert(offsetof(surface_vertex, u) == 12 && offsetof(surface_vertex, normal) == 16 &&
+              offsetof(surface_vertex, v) == 28 && offsetof(surface_vertex, tangent) == 32);
+
+/// The end of a branch segment, or the joint that two segments share (Akagi and Kitajima, 3.2).
+struct branch_end {
+    glm::vec3 position{0};             ///< m
+    float radius = 0;                  ///< m
+    glm::vec4 orientation{0, 0, 0, 1}; ///< unit quaternion x, y, z, w; local +Y is the growth
+    float path = 0;                    ///< m along the wood from the root; becomes v
+    float slope = 0;                   ///< change of radius along the growth; tilts the normal
+    float reserved[2] = {0, 0};
+};
+static_assert(sizeof(branch_end) == 48);
+static_assert(offsetof(branch_end, radius) == 12 && offsetof(branch_end, orientation) == 16 &&
+              offsetof(branch_end, path) == 32 && offsetof(branch_end, slope) == 36);
+
+/// A branch segment: two ends, and which of them a cap closes.
+struct branch_segment {
+    std::uint32_t start = 0; ///< index of a branch_end
+    std::uint32_t end = 0;   ///< index of a branch_end
+    std::uint32_t caps = 0;  ///< bit 0: a cap at the start, bit 1: one at the end
+    std::uint32_t reserved = 0;
+};
+static_assert(sizeof(branch_segment) == 16);
+
+inline constexpr std::uint32_t cap_start = 1;
+inline constexpr std::uint32_t cap_end = 2;
+
+} // namespace skybark

@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+"""Makes the checked-in headers from the texts in this folder; see README.md beside this.
+
+    embed.py           write what is out of date
+    embed.py --check   write nothing; exit 1 and name what is out of date
+
+A header carries the SHA-256 of the texts that it was made from, so --check needs no compiler.
+Writing needs glslangValidator and spirv-val.
+"""
+import hashlib
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent
+
+# (what the kernel must define, skeleton, member of program<K>); the suffix of the skeleton is its
+# stage. A skeleton that is absent for an API is not made for it.
+OPENGL = [
+    ("kernel_map", "map.comp"),
+    ("kernel_map", "levels.comp"),
+    ("kernel_strip", "strips.geom"),
+    ("kernel_ring", "rings.geom"),
+    ("kernel_fragment", "draw.vert"),
+    ("kernel_fragment", "draw.frag"),
+]
+VULKAN = [
+    ("kernel_map", "map.comp"),
+    ("kernel_map", "levels.comp"),
+    ("kernel_strip", "strip_counts.comp"),
+    ("kernel_strip", "strips.comp"),
+    ("kernel_ring", "rings.comp"),
+    ("kernel_fragment", "draw.vert"),
+    ("kernel_fragment", "draw.frag"),
+]
+INCLUDE = re.compile(r'^#include\s+(?:"([^"]+)"|(KERNEL))\s*$')
+
+
+def flatten(path, kernel=None, seen=None):
+    """The text with its includes in place, each once."""
+    seen = set() if seen is None else seen
+    path = path.resolve()
+    if path in seen:
+        return ""
+    seen.add(path)
+    lines = []
+    for line in path.read_text().splitlines():
+        match = INCLUDE.match(line)
+        if match:
+            target = kernel if match.group(2) else path.parent / match.group(1)
+            lines.append(flatten(target, kernel, seen))
+        elif line.strip() and not line.strip().startswith("//"):
+            lines.append(line + "\n")
+    return "".join(line if line.endswith("\n") or not line else line + "\n" for line in lines)
+
+
+def define(text, *names):
+    """The text with macros defined right after its #version line."""
+    version, rest = text.split("\n", 1)
+    return version + "\n" + "".join(f"#define {n}\n" for n in names) + rest
+
+
+def run(command):
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
+
+
+def check_glsl(text, stage, name):
+    with tempfile.TemporaryDirectory() as folder:
+        source = pathlib.Path(folder) / f"{name}.{stage}"
+        source.write_text(text)
+        run(["glslangValidator", "-S", stage, source])
+
+
+def spirv(text, stage, name):
+    with tempfile.TemporaryDirectory() as folder:
+        source = pathlib.Path(folder) / f"{name}.{stage}"
+        binary = pathlib.Path(folder) / "out.spv"
+        source.write_text(text)
+        run(["glslangValidator", "--target-env", "vulkan1.2", "-S", stage, "-o", binary, source])
+        run(["spirv-val", "--target-env", "vulkan1.2", binary])
+        data = binary.read_bytes()
+        return [int.from_bytes(data[i : i + 4], "little") for i in range(0, len(data), 4)]
+
+
+def member(skeleton):
+    return skeleton.replace(".", "_")
+
+
+def skeletons(table, kernel_text):
+    for function, skeleton in table:
+        path = HERE / "skeletons" / skeleton
+        if re.search(rf"\b{function}\s*\(", kernel_text) and path.exists():
+            yield path
+
+
+def words(values):
+    lines = []
+    for i in range(0, len(values), 12):
+        lines.append("        " + ", ".join(f"0x{v:x}" for v in values[i : i + 12]) + ",\n")
+    return "".join(lines)
+
+
+class Header:
+    """One generated header: its inputs, and how its body is made when they have changed."""
+
+    def __init__(self, path, inputs, body):
+        self.path = ROOT / path
+        self.hash = hashlib.sha256("\0".join(inputs).encode()).hexdigest()
+        self.body = body
+
+    def stale(self):
+        return not self.path.exists() or f"// sha256 {self.hash}\n" not in self.path.read_text()
+
+    def write(self):
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self.path.write_text(
+            "// clang-format off\n// Made by shaders/embed.py. Edit the text in shaders/ instead.\n"
+            f"// sha256 {self.hash}\n#pragma once\n\n{self.body()}"
+        )
+
+
+def shared_header(path):
+    """A formula as C++: the same text in a namespace, its functions inline."""
+    text = path.read_text()
+    includes = re.findall(r'^#include "(\w+)\.glsl"', text, re.M)
+    text = re.sub(r"^#include .*\n", "", text, flags=re.M)
+
+    def body():
+        function = re.compile(r"^(?=(?:[a-z_]\w*)\s+[a-z_]\w*\()", re.M)
+        lines = function.sub("inline ", text)
+        lines = re.sub(r"^inline (struct|return|else)", r"\1", lines, flags=re.M)
+        use = "".join(f"#include <skybark/shared/{n}.hpp>\n" for n in includes if n != "records")
+        return (
+            f"#include <skybark/shared/glsl.hpp>\n{use}\nnamespace skybark::shared {{\n\n{lines}\n"
+            "} // namespace skybark::shared\n"
+        )
+
+    return Header(f"include/skybark/shared/{path.stem}.hpp", ["cpp 1", *includes, text], body)
+
+
+def opengl_header(path):
+    name, kernel_text = path.stem, path.read_text()
+    texts = {}
+    for skeleton in skeletons(OPENGL, kernel_text):
+        expand = ["SKYBARK_EXPAND"] if skeleton.suffix == ".geom" else []
+        texts[skeleton.name] = define(flatten(skeleton, path), "SKYBARK_OPENGL", *expand)
+
+    def body():
+        members = ""
+        for skeleton, text in texts.items():
+            check_glsl(text, skeleton.split(".")[1], name)
+            members += f'    static constexpr std::string_view {member(skeleton)} = R"glsl({text})glsl";\n'
+        return (
+            f"#include <skybark/kernels/{name}.hpp>\n#include <skybark/opengl/program.hpp>\n\n"
+            f"namespace skybark::opengl {{\n\ntemplate <>\nstruct program<kernels::{name}> {{\n"
+            f"{members}}};\n\n}} // namespace skybark::opengl\n"
+        )
+
+    return Header(f"backends/skybark/opengl/programs/{name}.hpp", ["gl 1", *texts.values()], body)
+
+
+def vulkan_header(path):
+    name, kernel_text = path.stem, path.read_text()
+    texts = {}
+    for skeleton in skeletons(VULKAN, kernel_text):
+        expand = ["SKYBARK_EXPAND"] if function_of(skeleton.name) else []
+        texts[skeleton.name] = define(flatten(skeleton, path), "SKYBARK_VULKAN", *expand)
+
+    def body():
+        members = ""
+        for skeleton, text in texts.items():
+            binary = spirv(text, skeleton.split(".")[1], name)
+            members += (
+                f"    static constexpr std::uint32_t {member(skeleton)}[] = {{\n"
+                f"{words(binary)}    }};\n"
+            )
+        return (
+            f"#include <skybark/kernels/{name}.hpp>\n#include <skybark/vulkan/program.hpp>\n\n"
+            f"namespace skybark::vulkan {{\n\ntemplate <>\nstruct program<kernels::{name}> {{\n"
+            f"{members}}};\n\n}} // namespace skybark::vulkan\n"
+        )
+
+    return Header(f"backends/skybark/vulkan/programs/{name}.hpp", ["vk 1", *texts.values()], body)
+
+
+def function_of(skeleton):
+    return skeleton.startswith(("strip", "rings"))
+
+
+def standalone_headers():
+    """Programs of a backend that no kernel belongs to: shaders/programs/API_NAME.comp."""
+    for path in sorted((HERE / "programs").glob("*.comp")):
+        api, name = path.stem.split("_", 1)
+        text = define(flatten(path), f"SKYBARK_{api.upper()}")
+
+        def body(api=api, name=name, text=text):
+            if api == "opengl":
+                check_glsl(text, "comp", name)
+                value = f'inline constexpr std::string_view {name}_comp = R"glsl({text})glsl";\n'
+            else:
+                value = (
+                    f"inline constexpr std::uint32_t {name}_comp[] = {{\n"
+                    f"{words(spirv(text, 'comp', name))}}};\n"
+                )
+            return (
+                "#include <cstdint>\n#include <string_view>\n\n"
+                f"namespace skybark::{api} {{\n\n{value}\n}} // namespace skybark::{api}\n"
+            )
+
+        yield Header(f"backends/skybark/{api}/programs/own_{name}.hpp", ["own 1", text], body)
+
+
+def headers():
+    for path in sorted((HERE / "shared").glob("*.glsl")):
+        if path.stem != "records":
+            yield shared_header(path)
+    for path in sorted((HERE / "kernels").glob("*.glsl")):
+        yield opengl_header(path)
+        yield vulkan_header(path)
+    yield from standalone_headers()
+
+
+def main():
+    check = "--check" in sys.argv[1:]
+    stale = [h for h in headers() if h.stale()]
+    for header in stale:
+        if not check:
+            header.write()
+        print(("stale: " if check else "wrote ") + str(header.path.relative_to(ROOT)))
+    known = {h.path for h in headers()}
+    for folder in ("include/skybark/shared", "backends/skybark/opengl/programs",
+                   "backends/skybark/vulkan/programs"):
+        for path in (ROOT / folder).glob("*.hpp"):
+            if path not in known and "// Made by shaders/embed.py" in path.read_text():
+                stale.append(path)
+                print(f"left over: {path.relative_to(ROOT)}")
+    sys.exit(1 if check and stale else 0)
+
+
+main()
