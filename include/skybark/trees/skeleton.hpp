@@ -21,10 +21,10 @@ inline constexpr std::uint32_t none = 0xffffffffu;
 
 /// One segment as a reader finds it, in any order: a straight piece of wood from `base` to `tip`.
 struct segment {
-    glm::vec3 base{0};         ///< m
-    glm::vec3 tip{0};          ///< m
-    float base_radius = 0;     ///< m, at `base`; matters where a branch starts
-    float radius = 0;          ///< m, at `tip`
+    glm::vec3 base{0};           ///< m
+    glm::vec3 tip{0};            ///< m
+    float base_radius = 0;       ///< m, at `base`; matters where a branch starts
+    float radius = 0;            ///< m, at `tip`
     std::uint32_t parent = none; ///< index of the parent in the same array, or `none`
 };
 
@@ -33,13 +33,15 @@ struct skeleton {
     std::vector<std::uint32_t> parent;      ///< index < own index, or `none` for a root
     std::vector<std::uint32_t> first_child; ///< children are consecutive: [first, first + count)
     std::vector<std::uint32_t> child_count;
-    std::vector<std::uint32_t> continuation; ///< the child that continues this segment's ring, or `none`
+    /// The child that shares its ring at this segment's tip, or `none`: where the two bases differ
+    /// by a little (scans), the shared ring belongs at the tip.
+    std::vector<std::uint32_t> continuation;
     std::vector<glm::quat> orientation; ///< world space; local +Y runs from base to tip
     std::vector<glm::vec3> position;    ///< m, of the base
     std::vector<float> length;          ///< m
     std::vector<float> base_radius;     ///< m, at the base
     std::vector<float> radius;          ///< m, at the tip
-    std::vector<std::uint32_t> levels;  ///< level l is [levels[l], levels[l + 1]); size = levels + 1
+    std::vector<std::uint32_t> levels; ///< level l is [levels[l], levels[l + 1]); size = levels + 1
 
     [[nodiscard]] std::size_t size() const noexcept { return parent.size(); }
     [[nodiscard]] bool empty() const noexcept { return parent.empty(); }
