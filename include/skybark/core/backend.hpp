@@ -162,8 +162,8 @@ concept backend = std::same_as<typename B::backend_tag, backend_tag> &&
     requires(B& b, const B& c, const typename B::buffer& buffer, const typename B::image& image,
              typename B::recorder& recorder, std::uint64_t bytes, std::span<const std::byte> in,
              std::span<std::byte> out) {
-    { c.name() } -> std::convertible_to<std::string_view>; // "cpu", "opengl", "vulkan", …
-    { c.device() } -> std::convertible_to<std::string>;    // what runs it, for reports
+    { c.name() } -> std::convertible_to<std::string_view>;   // "cpu", "opengl", "vulkan", …
+    { c.device_name() } -> std::convertible_to<std::string>; // what runs it, for reports
     { c.limits() } -> std::convertible_to<device_limits>;
     { c.traffic() } -> std::convertible_to<device_traffic>;
     { buffer.size_bytes() } -> std::convertible_to<std::uint64_t>;
