@@ -1,0 +1,122 @@
+// clang-format off
+// Made by shaders/embed.py. Edit the text in shaders/ instead.
+// sha256 89e161ec2603b512301fd00dad5f0e617c7c897d81f62278eaa661446b99fd89
+#pragma once
+
+#include <skybark/kernels/probe_map.hpp>
+#include <skybark/opengl/program.hpp>
+
+namespace skybark::opengl {
+
+template <>
+struct program<kernels::probe_map> {
+    static constexpr std::string_view map_comp = R"glsl(#version 450
+#define SKYBARK_OPENGL
+layout(local_size_x = 64) in;
+#define KERNEL_PARAMETERS uint factor; uint offset; float scale; float bias;
+#ifdef SKYBARK_VULKAN
+layout(push_constant) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexIndex
+#define SKYBARK_IMAGE_BINDING 16
+#else
+layout(std140, binding = 0) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexID
+#define SKYBARK_IMAGE_BINDING 0
+#endif
+    uvec4 skybark_header;
+#ifdef KERNEL_PARAMETERS
+    KERNEL_PARAMETERS
+#endif
+};
+#ifdef SKYBARK_EXPAND
+vec4 vertex_out[VERTEX_VEC4S];
+void emit_vertex();
+#endif
+#ifdef SKYBARK_VERTEX_STAGE
+layout(location = 0) out vec4 varying_out[KERNEL_VARYINGS];
+#endif
+#ifdef SKYBARK_FRAGMENT_STAGE
+layout(location = 0) in vec4 varying_in[KERNEL_VARYINGS];
+layout(location = 0) out vec4 color_out;
+#endif
+#if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
+layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+layout(std430, binding = 0) readonly buffer numbers_buffer { uint numbers[]; };
+layout(std430, binding = 1) readonly buffer vectors_buffer { vec4 vectors[]; };
+layout(std430, binding = 2) writeonly buffer numbers_out_buffer { uint numbers_out[]; };
+layout(std430, binding = 3) writeonly buffer vectors_out_buffer { vec4 vectors_out[]; };
+void kernel_map(uint i) {
+    numbers_out[i] = numbers[i] * factor + offset + i;
+    vectors_out[i] = vectors[i] * scale + bias;
+}
+layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
+uint skybark_elements() {
+    return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
+                                         : skybark_header.y;
+}
+void main() {
+    uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
+             gl_LocalInvocationID.x;
+    if (i < skybark_elements()) {
+        kernel_map(skybark_header.x + i);
+    }
+}
+)glsl";
+    static constexpr std::string_view levels_comp = R"glsl(#version 450
+#define SKYBARK_OPENGL
+#define readonly coherent readonly
+#define writeonly coherent writeonly
+layout(local_size_x = 256) in;
+#define KERNEL_PARAMETERS uint factor; uint offset; float scale; float bias;
+#ifdef SKYBARK_VULKAN
+layout(push_constant) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexIndex
+#define SKYBARK_IMAGE_BINDING 16
+#else
+layout(std140, binding = 0) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexID
+#define SKYBARK_IMAGE_BINDING 0
+#endif
+    uvec4 skybark_header;
+#ifdef KERNEL_PARAMETERS
+    KERNEL_PARAMETERS
+#endif
+};
+#ifdef SKYBARK_EXPAND
+vec4 vertex_out[VERTEX_VEC4S];
+void emit_vertex();
+#endif
+#ifdef SKYBARK_VERTEX_STAGE
+layout(location = 0) out vec4 varying_out[KERNEL_VARYINGS];
+#endif
+#ifdef SKYBARK_FRAGMENT_STAGE
+layout(location = 0) in vec4 varying_in[KERNEL_VARYINGS];
+layout(location = 0) out vec4 color_out;
+#endif
+#if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
+layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+layout(std430, binding = 0) readonly buffer numbers_buffer { uint numbers[]; };
+layout(std430, binding = 1) readonly buffer vectors_buffer { vec4 vectors[]; };
+layout(std430, binding = 2) writeonly buffer numbers_out_buffer { uint numbers_out[]; };
+layout(std430, binding = 3) writeonly buffer vectors_out_buffer { vec4 vectors_out[]; };
+void kernel_map(uint i) {
+    numbers_out[i] = numbers[i] * factor + offset + i;
+    vectors_out[i] = vectors[i] * scale + bias;
+}
+layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
+void main() {
+    for (uint r = 0u; r < skybark_header.y; ++r) {
+        uvec2 elements = skybark_ranges[skybark_header.x + r];
+        for (uint i = gl_LocalInvocationID.x; i < elements.y; i += 256u) {
+            kernel_map(elements.x + i);
+        }
+        memoryBarrierBuffer();
+        barrier();
+    }
+}
+)glsl";
+};
+
+} // namespace skybark::opengl

@@ -1,0 +1,133 @@
+// clang-format off
+// Made by shaders/embed.py. Edit the text in shaders/ instead.
+// sha256 e7328a057ceb0d15c0ed1674ea89f30187fe8ca4eb64488517ee47bad645a2de
+#pragma once
+
+#include <skybark/kernels/probe_surface.hpp>
+#include <skybark/opengl/program.hpp>
+
+namespace skybark::opengl {
+
+template <>
+struct program<kernels::probe_surface> {
+    static constexpr std::string_view draw_vert = R"glsl(#version 450
+#define SKYBARK_OPENGL
+#define SKYBARK_VERTEX_STAGE
+#define KERNEL_PARAMETERS uint show; uint tint; float cutoff;
+#define KERNEL_VARYINGS 1
+#ifdef SKYBARK_VULKAN
+layout(push_constant) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexIndex
+#define SKYBARK_IMAGE_BINDING 16
+#else
+layout(std140, binding = 0) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexID
+#define SKYBARK_IMAGE_BINDING 0
+#endif
+    uvec4 skybark_header;
+#ifdef KERNEL_PARAMETERS
+    KERNEL_PARAMETERS
+#endif
+};
+#ifdef SKYBARK_EXPAND
+vec4 vertex_out[VERTEX_VEC4S];
+void emit_vertex();
+#endif
+#ifdef SKYBARK_VERTEX_STAGE
+layout(location = 0) out vec4 varying_out[KERNEL_VARYINGS];
+#endif
+#ifdef SKYBARK_FRAGMENT_STAGE
+layout(location = 0) in vec4 varying_in[KERNEL_VARYINGS];
+layout(location = 0) out vec4 color_out;
+#endif
+#if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
+layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+struct probe_vertex {
+    vec4 position;
+    vec4 color;
+};
+layout(std430, binding = 0) readonly buffer vertices_buffer { probe_vertex vertices[]; };
+layout(std430, binding = 1) readonly buffer tints_buffer { vec4 tints[]; };
+#ifdef SKYBARK_VERTEX_STAGE
+vec4 kernel_vertex(uint index) {
+    varying_out[0] = vertices[index].color;
+    return vertices[index].position;
+}
+#endif
+#ifdef SKYBARK_FRAGMENT_STAGE
+bool kernel_fragment(vec2 pixel, bool front) {
+    if (show == 1u) {
+        color_out = vec4(pixel.x, pixel.y, front ? 1.0 : 0.0, 1.0);
+        return true;
+    }
+    color_out = varying_in[0] * tints[tint];
+    return color_out.w >= cutoff;
+}
+#endif
+void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
+)glsl";
+    static constexpr std::string_view draw_frag = R"glsl(#version 450
+#define SKYBARK_OPENGL
+#define SKYBARK_FRAGMENT_STAGE
+#define KERNEL_PARAMETERS uint show; uint tint; float cutoff;
+#define KERNEL_VARYINGS 1
+#ifdef SKYBARK_VULKAN
+layout(push_constant) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexIndex
+#define SKYBARK_IMAGE_BINDING 16
+#else
+layout(std140, binding = 0) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexID
+#define SKYBARK_IMAGE_BINDING 0
+#endif
+    uvec4 skybark_header;
+#ifdef KERNEL_PARAMETERS
+    KERNEL_PARAMETERS
+#endif
+};
+#ifdef SKYBARK_EXPAND
+vec4 vertex_out[VERTEX_VEC4S];
+void emit_vertex();
+#endif
+#ifdef SKYBARK_VERTEX_STAGE
+layout(location = 0) out vec4 varying_out[KERNEL_VARYINGS];
+#endif
+#ifdef SKYBARK_FRAGMENT_STAGE
+layout(location = 0) in vec4 varying_in[KERNEL_VARYINGS];
+layout(location = 0) out vec4 color_out;
+#endif
+#if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
+layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+struct probe_vertex {
+    vec4 position;
+    vec4 color;
+};
+layout(std430, binding = 0) readonly buffer vertices_buffer { probe_vertex vertices[]; };
+layout(std430, binding = 1) readonly buffer tints_buffer { vec4 tints[]; };
+#ifdef SKYBARK_VERTEX_STAGE
+vec4 kernel_vertex(uint index) {
+    varying_out[0] = vertices[index].color;
+    return vertices[index].position;
+}
+#endif
+#ifdef SKYBARK_FRAGMENT_STAGE
+bool kernel_fragment(vec2 pixel, bool front) {
+    if (show == 1u) {
+        color_out = vec4(pixel.x, pixel.y, front ? 1.0 : 0.0, 1.0);
+        return true;
+    }
+    color_out = varying_in[0] * tints[tint];
+    return color_out.w >= cutoff;
+}
+#endif
+void main() {
+    if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
+        discard;
+    }
+}
+)glsl";
+};
+
+} // namespace skybark::opengl
