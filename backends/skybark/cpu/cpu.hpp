@@ -1,0 +1,5 @@
+#pragma once
+// The CPU backend in one include.
+
+#include <skybark/cpu/device.hpp>
+#include <skybark/cpu/hermite_branch.hpp>

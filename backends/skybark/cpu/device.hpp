@@ -1,0 +1,375 @@
+#pragma once
+// The CPU backend: the embedded default. Kernels run as plain C++ on threads; a recorder does its
+// work at once, so that a submit has nothing left to wait for. Results have the same bits for any
+// number of threads.
+
+#include <skybark/core/backend.hpp>
+#include <skybark/cpu/jobs.hpp>
+#include <skybark/cpu/memory.hpp>
+#include <skybark/cpu/program.hpp>
+#include <skybark/cpu/raster.hpp>
+#include <skybark/cpu/sinks.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace skybark::cpu {
+
+class recorder;
+
+/// How a CPU device is made.
+struct device_options {
+    std::uint32_t threads = 0; ///< 0: as many as the machine runs at once
+    parallel_for jobs;         ///< the caller's job system in place of our threads
+    /// What the device says that it can do. Smaller values make algorithms cut their work.
+    device_limits limits{std::uint64_t{1} << 46, 16, std::numeric_limits<std::uint32_t>::max(),
+                         32768};
+};
+
+class device {
+  public:
+    using backend_tag = skybark::backend_tag;
+    using buffer = cpu::buffer;
+    using image = cpu::image;
+    using recorder = cpu::recorder;
+
+    device() : device(device_options{}) {}
+    explicit device(device_options options)
+        : jobs_(std::move(options.jobs)), limits_(options.limits) {
+        if (!jobs_) {
+            const std::uint32_t threads = options.threads != 0
+                                              ? options.threads
+                                              : std::max(1u, std::thread::hardware_concurrency());
+            pool_ = std::make_unique<thread_pool>(threads);
+        }
+    }
+
+    [[nodiscard]] std::string_view name() const noexcept { return "cpu"; }
+    [[nodiscard]] std::string device_name() const {
+        return pool_ ? std::to_string(pool_->threads()) + " threads" : "the caller's jobs";
+    }
+    [[nodiscard]] device_limits limits() const noexcept { return limits_; }
+    [[nodiscard]] device_traffic traffic() const noexcept { return traffic_; }
+
+    [[nodiscard]] result<buffer> create_buffer(std::uint64_t bytes) {
+        detail::memory memory =
+            bytes <= limits_.max_buffer_bytes ? detail::allocate_zeroed(bytes) : nullptr;
+        if (!memory) {
+            return fail(error_code::out_of_memory,
+                        "The cpu backend could not allocate a buffer of " + std::to_string(bytes) +
+                            " bytes.");
+        }
+        return buffer(std::move(memory), bytes);
+    }
+
+    [[nodiscard]] result<image> create_image(image_description what) {
+        const std::string size = std::to_string(what.width) + " x " + std::to_string(what.height);
+        if (what.width == 0 || what.height == 0 ||
+            std::max(what.width, what.height) > limits_.max_image_size) {
+            return fail(error_code::out_of_memory, "The cpu backend cannot make an image of " +
+                                                       size + " pixels; each side must be 1 to " +
+                                                       std::to_string(limits_.max_image_size) +
+                                                       ".");
+        }
+        const std::uint64_t bytes =
+            std::uint64_t{what.width} * what.height * bytes_per_pixel(what.format);
+        detail::memory memory = detail::allocate_zeroed(bytes);
+        if (!memory) {
+            return fail(error_code::out_of_memory,
+                        "The cpu backend could not allocate an image of " + size + " pixels.");
+        }
+        return image(std::move(memory), what);
+    }
+
+    [[nodiscard]] result<void> upload(const buffer& to, std::uint64_t offset,
+                                      std::span<const std::byte> bytes) {
+        copy_bytes(to.data() + offset, bytes.data(), bytes.size());
+        traffic_.up += bytes.size();
+        return {};
+    }
+    [[nodiscard]] result<void> download(const buffer& from, std::uint64_t offset,
+                                        std::span<std::byte> bytes) {
+        copy_bytes(bytes.data(), from.data() + offset, bytes.size());
+        traffic_.down += bytes.size();
+        return {};
+    }
+    [[nodiscard]] result<void> upload(const image& to, std::span<const std::byte> bytes) {
+        copy_bytes(to.data(), bytes.data(), std::min<std::uint64_t>(bytes.size(), to.size_bytes()));
+        traffic_.up += bytes.size();
+        return {};
+    }
+    [[nodiscard]] result<void> download(const image& from, std::span<std::byte> bytes) {
+        copy_bytes(bytes.data(), from.data(),
+                   std::min<std::uint64_t>(bytes.size(), from.size_bytes()));
+        traffic_.down += bytes.size();
+        return {};
+    }
+
+    [[nodiscard]] result<cpu::recorder> begin();
+    [[nodiscard]] result<void> submit(cpu::recorder& recorder);
+
+    /// Runs tasks 0 … count − 1 on the device's threads.
+    void parallel(std::uint32_t count, const std::function<void(std::uint32_t)>& task) {
+        if (jobs_) {
+            jobs_(count, task);
+        } else {
+            (*pool_)(count, task);
+        }
+    }
+
+    /// Cuts [0, count) into pieces of at least `grain` (multiples of it, but the last) and runs
+    /// `piece(first, count)` for each. The cut does not depend on the number of threads.
+    template <class Piece>
+    void for_pieces(std::uint64_t count, std::uint64_t grain, Piece&& piece) {
+        constexpr std::uint64_t most_pieces = 256;
+        const std::uint64_t grains = (count + grain - 1) / grain;
+        const std::uint64_t size =
+            std::max<std::uint64_t>(1, (grains + most_pieces - 1) / most_pieces) * grain;
+        const auto pieces = static_cast<std::uint32_t>((count + size - 1) / size);
+        if (pieces == 1) {
+            piece(std::uint64_t{0}, count);
+            return;
+        }
+        parallel(pieces, [&](std::uint32_t i) {
+            const std::uint64_t first = i * size;
+            piece(first, std::min(size, count - first));
+        });
+    }
+
+  private:
+    friend class cpu::recorder;
+
+    static void copy_bytes(void* to, const void* from, std::uint64_t bytes) {
+        if (bytes != 0) {
+            std::memmove(to, from, bytes);
+        }
+    }
+
+    parallel_for jobs_;
+    std::unique_ptr<thread_pool> pool_;
+    device_limits limits_;
+    device_traffic traffic_;
+    raster_scratch raster_;
+    std::vector<std::uint64_t> counts_;
+};
+
+/// Appends patterns; on this backend each is done when its call returns.
+class recorder {
+  public:
+    using device = cpu::device;
+
+    explicit recorder(device& on) : device_(&on) {}
+
+    void upload(const buffer_view<device>& to, std::span<const std::byte> bytes) {
+        device::copy_bytes(to.buffer->data() + to.offset, bytes.data(),
+                           std::min<std::uint64_t>(bytes.size(), to.size));
+        device_->traffic_.up += bytes.size();
+    }
+
+    void copy(const buffer_view<device>& from, const buffer_view<device>& to) {
+        device::copy_bytes(to.buffer->data() + to.offset, from.buffer->data() + from.offset,
+                           std::min(from.size, to.size));
+    }
+
+    template <map_kernel K>
+    void map(const K& kernel, const bindings<device, K>& buffers, range elements) {
+        with_spans<K>(buffers, [&](auto... spans) {
+            device_->for_pieces(
+                elements.count, 1024, [&](std::uint64_t first, std::uint64_t count) {
+                    const auto begin = static_cast<std::uint32_t>(elements.first + first);
+                    const auto end = static_cast<std::uint32_t>(begin + count);
+                    for (std::uint32_t i = begin; i < end; ++i) {
+                        kernel.map(i, spans...);
+                    }
+                });
+        });
+    }
+
+    template <map_kernel K>
+    void map(const K& kernel, const bindings<device, K>& buffers, std::span<const range> ranges) {
+        for (const range elements : ranges) {
+            map(kernel, buffers, elements);
+        }
+    }
+
+    template <map_kernel K>
+    void map(const K& kernel, const bindings<device, K>& buffers, const counted<device>& elements) {
+        map(kernel, buffers, range{0, length_of(elements)});
+    }
+
+    template <strip_kernel K>
+    void expand(const K& kernel, const bindings<device, K>& buffers, range elements,
+                const triangle_list<device>& out) {
+        with_spans<K>(buffers, [&](auto... spans) {
+            if (out.policy == padding::degenerate) {
+                expand_degenerate(kernel, elements, out, spans...);
+            } else {
+                expand_compact(kernel, elements, out, spans...);
+            }
+        });
+    }
+
+    template <strip_kernel K>
+    void expand(const K& kernel, const bindings<device, K>& buffers,
+                const counted<device>& elements, const triangle_list<device>& out) {
+        expand(kernel, buffers, range{0, length_of(elements)}, out);
+    }
+
+    template <ring_kernel K>
+    void expand_rings(const K& kernel, const bindings<device, K>& buffers, range elements,
+                      const buffer_view<device>& vertices) {
+        const std::uint64_t stride =
+            std::uint64_t{kernel.ring_vertices()} * sizeof(typename K::vertex);
+        const std::uint64_t room = stride == 0 ? 0 : vertices.size / stride;
+        const std::uint64_t count = std::min<std::uint64_t>(elements.count, room);
+        std::byte* to = vertices.buffer->data() + vertices.offset;
+        with_spans<K>(buffers, [&](auto... spans) {
+            device_->for_pieces(count, 64, [&](std::uint64_t first, std::uint64_t n) {
+                const range piece{static_cast<std::uint32_t>(elements.first + first),
+                                  static_cast<std::uint32_t>(n)};
+                program<K>::rings(kernel, piece, to + first * stride, spans...);
+                finish_streaming();
+            });
+        });
+    }
+
+    template <draw_kernel K>
+    void draw(const K& kernel, const bindings<device, K>& buffers,
+              const image_bindings<device, K>& images, const draw_geometry<device>& geometry,
+              const draw_target<device>& target, draw_state state) {
+        with_spans<K>(buffers, [&](auto... spans) {
+            rasterise(*device_, device_->raster_, kernel, images, geometry, target, state,
+                      spans...);
+        });
+    }
+
+  private:
+    /// Calls `work` with a span for each view.
+    template <class K, class Work>
+    static void with_spans(const bindings<device, K>& buffers, Work&& work) {
+        with_spans<typename K::buffers::spans>(buffers, work,
+                                               std::make_index_sequence<K::buffers::size>{});
+    }
+    template <class Spans, class Bindings, class Work, std::size_t... I>
+    static void with_spans(const Bindings& buffers, Work&& work, std::index_sequence<I...>) {
+        (void)buffers;
+        work(records_of<device, std::tuple_element_t<I, Spans>>(buffers[I])...);
+    }
+
+    [[nodiscard]] static std::uint32_t length_of(const counted<device>& elements) {
+        count_record record;
+        std::memcpy(&record, elements.count.buffer->data() + elements.count.offset, sizeof record);
+        return std::min(record.written, elements.limit);
+    }
+
+    template <class K>
+    [[nodiscard]] static std::uint64_t room_for_triangles(const triangle_list<device>& out) {
+        return out.vertices.size / (3 * sizeof(typename K::vertex));
+    }
+
+    static void write_count(const triangle_list<device>& out, std::uint64_t required,
+                            std::uint64_t room) {
+        constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+        count_record record;
+        record.written = static_cast<std::uint32_t>(std::min({required, room, most}));
+        record.required = static_cast<std::uint32_t>(std::min(required, most));
+        std::memcpy(out.count.buffer->data() + out.count.offset, &record, sizeof record);
+    }
+
+    template <class K, class... Spans>
+    void expand_degenerate(const K& kernel, range elements, const triangle_list<device>& out,
+                           Spans... spans) {
+        using vertex = typename K::vertex;
+        const std::uint64_t each = max_triangles(kernel);
+        const std::uint64_t room = room_for_triangles<K>(out);
+        std::byte* to = out.vertices.buffer->data() + out.vertices.offset;
+        device_->for_pieces(elements.count, 64, [&](std::uint64_t first, std::uint64_t count) {
+            const std::uint64_t begin = first * each;
+            if (begin >= room) {
+                return;
+            }
+            triangle_sink<vertex> sink(to + begin * 3 * sizeof(vertex), room - begin);
+            for (std::uint64_t i = first; i < first + count; ++i) {
+                const auto element = static_cast<std::uint32_t>(elements.first + i);
+                for (std::uint32_t s = 0; s < kernel.strips(); ++s) {
+                    const std::uint32_t n = emit_strip(kernel, element, s, sink, spans...);
+                    sink.degenerate(kernel.strip_triangles() - n);
+                }
+            }
+            finish_streaming();
+        });
+        write_count(out, each * elements.count, room);
+    }
+
+    template <class K, class... Spans>
+    void expand_compact(const K& kernel, range elements, const triangle_list<device>& out,
+                        Spans... spans) {
+        using vertex = typename K::vertex;
+        const std::uint64_t room = room_for_triangles<K>(out);
+        std::byte* to = out.vertices.buffer->data() + out.vertices.offset;
+        // Offsets of blocks, not of elements: 1/64 of the memory, and the count is cheap.
+        constexpr std::uint32_t block = 64;
+        const std::uint64_t blocks = (std::uint64_t{elements.count} + block - 1) / block;
+        std::vector<std::uint64_t>& offsets = device_->counts_;
+        offsets.assign(blocks + 1, 0);
+        const auto elements_of = [&](std::uint64_t b) {
+            const auto first = static_cast<std::uint32_t>(elements.first + b * block);
+            return range{first, std::min(block, elements.first + elements.count - first)};
+        };
+        device_->for_pieces(blocks, 16, [&](std::uint64_t first, std::uint64_t count) {
+            for (std::uint64_t b = first; b < first + count; ++b) {
+                offsets[b + 1] = count_triangles(kernel, elements_of(b), spans...);
+            }
+        });
+        for (std::uint64_t b = 0; b < blocks; ++b) {
+            offsets[b + 1] += offsets[b];
+        }
+        device_->for_pieces(blocks, 1, [&](std::uint64_t first, std::uint64_t count) {
+            if (offsets[first] >= room) {
+                return;
+            }
+            triangle_sink<vertex> sink(to + offsets[first] * 3 * sizeof(vertex),
+                                       room - offsets[first]);
+            for (std::uint64_t b = first; b < first + count; ++b) {
+                const range part = elements_of(b);
+                for (std::uint32_t i = part.first; i < part.first + part.count; ++i) {
+                    for (std::uint32_t s = 0; s < kernel.strips(); ++s) {
+                        emit_strip(kernel, i, s, sink, spans...);
+                    }
+                }
+            }
+            finish_streaming();
+        });
+        write_count(out, offsets[blocks], room);
+    }
+
+    template <class K, class... Spans>
+    [[nodiscard]] static std::uint64_t count_triangles(const K& kernel, range elements,
+                                                       Spans... spans) {
+        std::uint64_t triangles = 0;
+        for (std::uint32_t i = elements.first; i < elements.first + elements.count; ++i) {
+            for (std::uint32_t s = 0; s < kernel.strips(); ++s) {
+                triangles += kernel.triangles(i, s, spans...);
+            }
+        }
+        return triangles;
+    }
+
+    template <class K, class Sink, class... Spans>
+    static std::uint32_t emit_strip(const K& kernel, std::uint32_t element, std::uint32_t strip,
+                                    Sink& sink, Spans... spans) {
+        const std::uint32_t triangles = kernel.triangles(element, strip, spans...);
+        if (triangles != 0) {
+            sink.begin_strip();
+            kernel.strip(element, strip, 0, triangles + 2, sink, spans...);
+        }
+        return triangles;
+    }
+
+    device* device_;
+};
+
+inline result<recorder> device::begin() { return recorder(*this); }
+inline result<void> device::submit(recorder&) { return {}; }
+
+} // namespace skybark::cpu

@@ -1,0 +1,94 @@
+#pragma once
+// Buffers and images of the CPU backend: plain memory, ours or the caller's.
+
+#include <skybark/core/backend.hpp>
+
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+
+namespace skybark::cpu {
+
+/// Vertices are stored past the cache in 16-byte pieces, and lines are 64 bytes.
+inline constexpr std::size_t memory_alignment = 64;
+
+namespace detail {
+struct free_memory {
+    void operator()(void* memory) const noexcept { std::free(memory); }
+};
+using memory = std::unique_ptr<void, free_memory>;
+
+/// Zeroed memory. The pages come from the system when they are first touched.
+[[nodiscard]] inline memory allocate_zeroed(std::size_t bytes) {
+    return memory(std::calloc(bytes + memory_alignment, 1));
+}
+
+[[nodiscard]] inline std::byte* align_up(void* pointer) {
+    void* aligned = pointer;
+    std::size_t space = memory_alignment;
+    return static_cast<std::byte*>(std::align(memory_alignment, 0, aligned, space));
+}
+} // namespace detail
+
+/// A buffer: zeroed memory of its own (`device::create_buffer`), or a view of the caller's
+/// (`wrap`).
+class buffer {
+  public:
+    buffer() = default;
+    buffer(detail::memory owned, std::uint64_t bytes)
+        : owned_(std::move(owned)), data_(detail::align_up(owned_.get())), size_(bytes) {}
+
+    /// The caller's memory, 16-byte aligned; it must outlive the buffer.
+    [[nodiscard]] static buffer wrap(std::span<std::byte> memory) {
+        buffer wrapped;
+        wrapped.data_ = memory.data();
+        wrapped.size_ = memory.size();
+        return wrapped;
+    }
+
+    [[nodiscard]] std::uint64_t size_bytes() const noexcept { return size_; }
+    [[nodiscard]] std::byte* data() const noexcept { return data_; }
+
+  private:
+    detail::memory owned_;
+    std::byte* data_ = nullptr;
+    std::uint64_t size_ = 0;
+};
+
+/// An image: rows from the top, pixels without gaps.
+class image {
+  public:
+    image() = default;
+    image(detail::memory owned, image_description what)
+        : owned_(std::move(owned)), data_(detail::align_up(owned_.get())), what_(what) {}
+
+    [[nodiscard]] static image wrap(std::span<std::byte> memory, image_description what) {
+        image wrapped;
+        wrapped.data_ = memory.data();
+        wrapped.what_ = what;
+        return wrapped;
+    }
+
+    [[nodiscard]] image_description description() const noexcept { return what_; }
+    [[nodiscard]] std::byte* data() const noexcept { return data_; }
+    [[nodiscard]] std::uint64_t size_bytes() const noexcept {
+        return std::uint64_t{what_.width} * what_.height * bytes_per_pixel(what_.format);
+    }
+
+  private:
+    detail::memory owned_;
+    std::byte* data_ = nullptr;
+    image_description what_;
+};
+
+/// The records of a view.
+template <class B, class Span>
+[[nodiscard]] Span records_of(const buffer_view<B>& view) {
+    using value = typename Span::element_type;
+    if (!view) {
+        return {};
+    }
+    return {reinterpret_cast<value*>(view.buffer->data() + view.offset), view.size / sizeof(value)};
+}
+
+} // namespace skybark::cpu

@@ -1,0 +1,492 @@
+#pragma once
+// The CPU backend's rasteriser: clip, project, and cover pixel centres, as GPUs do.
+//
+// Positions are rounded to 1/256 of a pixel and the edge functions are integers, so a pixel on a
+// shared edge belongs to exactly one of its triangles (the top-left rule) and the picture does not
+// depend on the number of threads: triangles are set up in parallel, then each band of rows draws
+// all of them in order.
+
+#include <skybark/core/backend.hpp>
+#include <skybark/cpu/memory.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <vector>
+
+namespace skybark::cpu {
+
+/// A triangle on the screen, ready to be covered.
+struct screen_triangle {
+    std::int64_t x[3], y[3]; ///< 1/256 pixel, y down, clockwise as seen
+    float z[3];              ///< depth
+    float inverse_w[3];
+    glm::vec3 weights[3];    ///< where each corner lies in the triangle that was clipped
+    std::uint32_t vertex[3]; ///< in the batch's shaded vertices
+    bool clipped = false;
+    bool front = true;
+};
+
+/// Memory that draws use again.
+struct raster_scratch {
+    std::vector<glm::vec4> clip;
+    std::vector<glm::vec4> varyings;
+    std::vector<std::vector<screen_triangle>> pieces;
+};
+
+namespace raster {
+
+inline constexpr std::int64_t subpixels = 256;
+inline constexpr std::uint32_t batch_triangles = 1u << 16;
+inline constexpr std::uint32_t piece_triangles = 2048;
+inline constexpr std::uint32_t band_rows = 32;
+/// Clip-space x and y may reach this times w before they are clipped: edge functions of images up
+/// to 2^15 pixels then stay below 2^58.
+inline constexpr float guard_band = 16.0f;
+
+struct corner {
+    glm::vec4 position;
+    glm::vec3 weights;
+};
+
+/// A convex polygon: a triangle gains at most one corner a plane.
+struct polygon {
+    corner corners[9];
+    int count = 0;
+};
+
+/// Signed distance of a clip-space position from plane `i`; inside is ≥ 0.
+[[nodiscard]] inline float plane_distance(const glm::vec4& p, int i) {
+    switch (i) {
+    case 0:
+        return p.z;
+    case 1:
+        return p.w - p.z;
+    case 2:
+        return guard_band * p.w - p.x;
+    case 3:
+        return guard_band * p.w + p.x;
+    case 4:
+        return guard_band * p.w - p.y;
+    default:
+        return guard_band * p.w + p.y;
+    }
+}
+inline constexpr int plane_count = 6;
+
+[[nodiscard]] inline polygon clip_by_plane(const polygon& in, int plane) {
+    polygon out;
+    for (int i = 0; i < in.count; ++i) {
+        const corner& a = in.corners[i];
+        const corner& b = in.corners[(i + 1) % in.count];
+        const float da = plane_distance(a.position, plane);
+        const float db = plane_distance(b.position, plane);
+        if (da >= 0) {
+            out.corners[out.count++] = a;
+        }
+        if ((da >= 0) != (db >= 0)) {
+            const float t = da / (da - db);
+            out.corners[out.count++] = {glm::mix(a.position, b.position, t),
+                                        glm::mix(a.weights, b.weights, t)};
+        }
+    }
+    return out;
+}
+
+[[nodiscard]] inline bool finite(const glm::vec4& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(p.w);
+}
+
+/// Which planes `p` is outside of, a bit each.
+[[nodiscard]] inline unsigned outside(const glm::vec4& p) {
+    unsigned bits = 0;
+    for (int i = 0; i < plane_count; ++i) {
+        bits |= plane_distance(p, i) < 0 ? 1u << i : 0u;
+    }
+    return bits;
+}
+
+struct viewport {
+    std::uint32_t width;
+    std::uint32_t height;
+};
+
+/// Projects three corners and keeps the triangle if it covers anything.
+inline void project(const corner* c0, const corner* c1, const corner* c2,
+                    const std::uint32_t (&vertex)[3], viewport size, cull_mode cull, bool clipped,
+                    std::vector<screen_triangle>& out) {
+    screen_triangle t;
+    const corner* corners[3] = {c0, c1, c2};
+    const auto fixed = [](float pixels) {
+        return static_cast<std::int64_t>(std::lrint(pixels * static_cast<float>(subpixels)));
+    };
+    for (int i = 0; i < 3; ++i) {
+        const glm::vec4& p = corners[i]->position;
+        if (!(p.w > 0)) {
+            return;
+        }
+        const float inverse_w = 1.0f / p.w;
+        t.x[i] = fixed((p.x * inverse_w * 0.5f + 0.5f) * static_cast<float>(size.width));
+        t.y[i] = fixed((0.5f - p.y * inverse_w * 0.5f) * static_cast<float>(size.height));
+        t.z[i] = p.z * inverse_w;
+        t.inverse_w[i] = inverse_w;
+        t.weights[i] = corners[i]->weights;
+        t.vertex[i] = vertex[i];
+    }
+    const std::int64_t area =
+        (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
+    // y points down here, so a positive area is clockwise as drawn with y up: a back face.
+    t.front = area < 0;
+    t.clipped = clipped;
+    if (area == 0 || (cull == cull_mode::back && !t.front)) {
+        return;
+    }
+    if (area < 0) {
+        std::swap(t.x[1], t.x[2]);
+        std::swap(t.y[1], t.y[2]);
+        std::swap(t.z[1], t.z[2]);
+        std::swap(t.inverse_w[1], t.inverse_w[2]);
+        if (clipped) {
+            std::swap(t.weights[1], t.weights[2]);
+        } else {
+            std::swap(t.vertex[1], t.vertex[2]);
+        }
+    }
+    const std::int64_t most_x = std::max({t.x[0], t.x[1], t.x[2]});
+    const std::int64_t most_y = std::max({t.y[0], t.y[1], t.y[2]});
+    const std::int64_t least_x = std::min({t.x[0], t.x[1], t.x[2]});
+    const std::int64_t least_y = std::min({t.y[0], t.y[1], t.y[2]});
+    if (most_x < 0 || most_y < 0 || least_x > std::int64_t{size.width} * subpixels ||
+        least_y > std::int64_t{size.height} * subpixels) {
+        return;
+    }
+    out.push_back(t);
+}
+
+/// Clips a triangle of shaded vertices and keeps what is left of it.
+inline void set_up(const glm::vec4* clip, const std::uint32_t (&vertex)[3], viewport size,
+                   cull_mode cull, std::vector<screen_triangle>& out) {
+    const glm::vec4& a = clip[vertex[0]];
+    const glm::vec4& b = clip[vertex[1]];
+    const glm::vec4& c = clip[vertex[2]];
+    if (!finite(a) || !finite(b) || !finite(c)) {
+        return;
+    }
+    const unsigned outside_a = outside(a);
+    const unsigned outside_b = outside(b);
+    const unsigned outside_c = outside(c);
+    if ((outside_a & outside_b & outside_c) != 0) {
+        return;
+    }
+    polygon shape{{{a, {1, 0, 0}}, {b, {0, 1, 0}}, {c, {0, 0, 1}}}, 3};
+    const unsigned crossed = outside_a | outside_b | outside_c;
+    for (int plane = 0; plane < plane_count && crossed != 0; ++plane) {
+        if ((crossed >> plane & 1u) != 0) {
+            shape = clip_by_plane(shape, plane);
+        }
+    }
+    for (int i = 2; i < shape.count; ++i) {
+        project(&shape.corners[0], &shape.corners[i - 1], &shape.corners[i], vertex, size, cull,
+                crossed != 0, out);
+    }
+}
+
+/// An edge function over pixel centres: its value, and how it changes by a pixel.
+struct edge {
+    std::int64_t value, step_x, step_y;
+
+    /// Positive inside; `bias` makes a centre on the edge belong to top and left edges only.
+    [[nodiscard]] static edge between(const screen_triangle& t, int from, int to,
+                                      std::int64_t pixel_x, std::int64_t pixel_y) {
+        const std::int64_t dx = t.x[to] - t.x[from];
+        const std::int64_t dy = t.y[to] - t.y[from];
+        const std::int64_t px = pixel_x * subpixels + subpixels / 2 - t.x[from];
+        const std::int64_t py = pixel_y * subpixels + subpixels / 2 - t.y[from];
+        return {dx * py - dy * px, -dy * subpixels, dx * subpixels};
+    }
+    [[nodiscard]] static std::int64_t bias(const screen_triangle& t, int from, int to) {
+        const bool top = t.y[to] == t.y[from] && t.x[to] > t.x[from];
+        const bool left = t.y[to] < t.y[from];
+        return top || left ? 0 : -1;
+    }
+};
+
+/// Calls `pixel(x, y, b)` for each covered pixel of rows [row_first, row_end), b being the
+/// barycentric weights on the screen.
+template <class Pixel>
+void cover(const screen_triangle& t, viewport size, std::int64_t row_first, std::int64_t row_end,
+           Pixel&& pixel) {
+    const auto floor_pixel = [](std::int64_t v) { return v >> 8; };
+    const std::int64_t x_first =
+        std::max<std::int64_t>(0, floor_pixel(std::min({t.x[0], t.x[1], t.x[2]})));
+    const std::int64_t x_end =
+        std::min<std::int64_t>(size.width, floor_pixel(std::max({t.x[0], t.x[1], t.x[2]})) + 1);
+    const std::int64_t y_first =
+        std::max(row_first, floor_pixel(std::min({t.y[0], t.y[1], t.y[2]})));
+    const std::int64_t y_end =
+        std::min(row_end, floor_pixel(std::max({t.y[0], t.y[1], t.y[2]})) + 1);
+    if (x_first >= x_end || y_first >= y_end) {
+        return;
+    }
+    edge e[3] = {edge::between(t, 1, 2, x_first, y_first), edge::between(t, 2, 0, x_first, y_first),
+                 edge::between(t, 0, 1, x_first, y_first)};
+    const std::int64_t bias[3] = {edge::bias(t, 1, 2), edge::bias(t, 2, 0), edge::bias(t, 0, 1)};
+    const std::int64_t area =
+        (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
+    const float inverse_area = 1.0f / static_cast<float>(area);
+    for (std::int64_t y = y_first; y < y_end; ++y) {
+        std::int64_t v0 = e[0].value;
+        std::int64_t v1 = e[1].value;
+        std::int64_t v2 = e[2].value;
+        for (std::int64_t x = x_first; x < x_end; ++x) {
+            if (((v0 + bias[0]) | (v1 + bias[1]) | (v2 + bias[2])) >= 0) {
+                const float b1 = static_cast<float>(v1) * inverse_area;
+                const float b2 = static_cast<float>(v2) * inverse_area;
+                pixel(x, y, glm::vec3(1.0f - b1 - b2, b1, b2));
+            }
+            v0 += e[0].step_x;
+            v1 += e[1].step_x;
+            v2 += e[2].step_x;
+        }
+        for (edge& side : e) {
+            side.value += side.step_y;
+        }
+    }
+}
+
+[[nodiscard]] inline glm::vec4 load_pixel(const image& from, std::uint64_t index) {
+    const std::byte* data = from.data() + index * bytes_per_pixel(from.description().format);
+    switch (from.description().format) {
+    case image_format::rgba8: {
+        std::uint8_t bytes[4];
+        std::memcpy(bytes, data, sizeof bytes);
+        return glm::vec4(bytes[0], bytes[1], bytes[2], bytes[3]) * (1.0f / 255.0f);
+    }
+    case image_format::rgba32f: {
+        glm::vec4 value;
+        std::memcpy(&value, data, sizeof value);
+        return value;
+    }
+    case image_format::depth32f:
+        break;
+    }
+    float depth = 0;
+    std::memcpy(&depth, data, sizeof depth);
+    return {depth, 0, 0, 1};
+}
+
+inline void store_pixel(const image& to, std::uint64_t index, const glm::vec4& value) {
+    std::byte* data = to.data() + index * bytes_per_pixel(to.description().format);
+    if (to.description().format == image_format::rgba32f) {
+        std::memcpy(data, &value, sizeof value);
+        return;
+    }
+    std::uint8_t bytes[4];
+    for (int i = 0; i < 4; ++i) {
+        // The comparison is false for NaN, which becomes 0 as on GPUs.
+        const float clamped = value[i] > 0.0f ? std::min(value[i], 1.0f) : 0.0f;
+        bytes[i] = static_cast<std::uint8_t>(clamped * 255.0f + 0.5f);
+    }
+    std::memcpy(data, bytes, sizeof bytes);
+}
+
+} // namespace raster
+
+/// How fragment functions read the bound images.
+template <class Images>
+class image_reader {
+  public:
+    explicit image_reader(const Images& images) : images_(&images) {}
+
+    [[nodiscard]] glm::ivec2 size(std::uint32_t n) const {
+        const image_description what = (*images_)[n].image->description();
+        return {static_cast<int>(what.width), static_cast<int>(what.height)};
+    }
+
+    /// A texel; outside the image the nearest one.
+    [[nodiscard]] glm::vec4 fetch(std::uint32_t n, glm::ivec2 texel) const {
+        const glm::ivec2 s = size(n);
+        const glm::ivec2 t = glm::clamp(texel, glm::ivec2(0), s - 1);
+        return raster::load_pixel(*(*images_)[n].image, static_cast<std::uint64_t>(t.y) *
+                                                                static_cast<std::uint64_t>(s.x) +
+                                                            static_cast<std::uint64_t>(t.x));
+    }
+
+    /// The image at (u, v), 0…1 from its upper left corner, by the binding's filter and wrap.
+    [[nodiscard]] glm::vec4 sample(std::uint32_t n, glm::vec2 at) const {
+        const glm::vec2 texels = at * glm::vec2(size(n));
+        if ((*images_)[n].filter == filter_mode::nearest) {
+            return wrapped(n, glm::ivec2(glm::floor(texels)));
+        }
+        const glm::vec2 corner = glm::floor(texels - 0.5f);
+        const glm::vec2 part = texels - 0.5f - corner;
+        const glm::ivec2 i(corner);
+        const glm::vec4 upper = glm::mix(wrapped(n, i), wrapped(n, {i.x + 1, i.y}), part.x);
+        const glm::vec4 lower =
+            glm::mix(wrapped(n, {i.x, i.y + 1}), wrapped(n, {i.x + 1, i.y + 1}), part.x);
+        return glm::mix(upper, lower, part.y);
+    }
+
+  private:
+    [[nodiscard]] glm::vec4 wrapped(std::uint32_t n, glm::ivec2 texel) const {
+        if ((*images_)[n].wrap == wrap_mode::repeat) {
+            const glm::ivec2 s = size(n);
+            texel = (texel % s + s) % s;
+        }
+        return fetch(n, texel);
+    }
+
+    const Images* images_;
+};
+
+namespace raster {
+
+/// Fills the target where the draw asks for it.
+template <class Device>
+void clear(Device& device, const draw_target<Device>& target, viewport size) {
+    const auto rows = [&](auto&& work) { device.for_pieces(size.height, band_rows, work); };
+    if (target.color != nullptr && target.clear_color) {
+        rows([&](std::uint64_t first, std::uint64_t count) {
+            for (std::uint64_t i = first * size.width; i < (first + count) * size.width; ++i) {
+                store_pixel(*target.color, i, *target.clear_color);
+            }
+        });
+    }
+    if (target.depth != nullptr && target.clear_depth) {
+        rows([&](std::uint64_t first, std::uint64_t count) {
+            float* depth = reinterpret_cast<float*>(target.depth->data());
+            std::fill_n(depth + first * size.width, count * size.width, *target.clear_depth);
+        });
+    }
+}
+
+/// The perspective-correct weights of the triangle's vertices at a pixel.
+[[nodiscard]] inline glm::vec3 vertex_weights(const screen_triangle& t, const glm::vec3& screen) {
+    const glm::vec3 over_w(screen.x * t.inverse_w[0], screen.y * t.inverse_w[1],
+                           screen.z * t.inverse_w[2]);
+    const glm::vec3 b = over_w / (over_w.x + over_w.y + over_w.z);
+    return t.clipped ? t.weights[0] * b.x + t.weights[1] * b.y + t.weights[2] * b.z : b;
+}
+
+} // namespace raster
+
+/// Draws triangles with kernel `K`: see the contract in skybark/core/backend.hpp.
+template <class Device, draw_kernel K, class... Spans>
+void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
+               const image_bindings<Device, K>& images, const draw_geometry<Device>& geometry,
+               const draw_target<Device>& target, draw_state state, Spans... spans) {
+    using namespace raster;
+    using varyings = std::array<glm::vec4, K::varyings>;
+    const image* sized = target.color != nullptr ? target.color : target.depth;
+    const viewport size{sized->description().width, sized->description().height};
+    clear(device, target, size);
+
+    std::uint32_t count = geometry.count;
+    if (geometry.length) {
+        count_record length;
+        std::memcpy(&length, geometry.length.buffer->data() + geometry.length.offset,
+                    sizeof length);
+        count = 3 * length.written;
+    }
+    const auto indices = records_of<Device, std::span<const std::uint32_t>>(geometry.indices);
+    const auto vertex_number = [&](std::uint32_t i) {
+        return geometry.base_vertex + (indices.empty() ? i : indices[i]);
+    };
+    const image_reader reader(images);
+    float* const depth =
+        target.depth != nullptr ? reinterpret_cast<float*>(target.depth->data()) : nullptr;
+
+    const auto shade_pixel = [&](const screen_triangle& t, std::int64_t x, std::int64_t y,
+                                 const glm::vec3& b) {
+        const auto index =
+            static_cast<std::uint64_t>(y) * size.width + static_cast<std::uint64_t>(x);
+        const float z = t.z[0] * b.x + t.z[1] * b.y + t.z[2] * b.z;
+        if (depth != nullptr && state.depth_test && !(z <= depth[index])) {
+            return;
+        }
+        varyings in;
+        const glm::vec3 w = vertex_weights(t, b);
+        const glm::vec4* corner[3];
+        for (int i = 0; i < 3; ++i) {
+            corner[i] = scratch.varyings.data() + std::size_t{t.vertex[i]} * K::varyings;
+        }
+        for (std::size_t i = 0; i < K::varyings; ++i) {
+            in[i] = corner[0][i] * w.x + corner[1][i] * w.y + corner[2][i] * w.z;
+        }
+        const glm::vec2 pixel(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+        const fragment_output out = kernel.fragment(in, pixel, t.front, reader, spans...);
+        if (!out.keep) {
+            return;
+        }
+        if (depth != nullptr && state.depth_write && state.depth_test) {
+            depth[index] = z;
+        }
+        if (target.color != nullptr) {
+            const bool blend = state.blend == blend_mode::alpha;
+            store_pixel(*target.color, index,
+                        blend ? out.color + load_pixel(*target.color, index) * (1.0f - out.color.a)
+                              : out.color);
+        }
+    };
+
+    for (std::uint64_t done = 0; done + 2 < count; done += 3ull * batch_triangles) {
+        const auto first = static_cast<std::uint32_t>(geometry.first + done);
+        const auto triangles = static_cast<std::uint32_t>(
+            std::min<std::uint64_t>(batch_triangles, (count - done) / 3));
+        // Shade each vertex once where the batch's indices are close together, as they are in
+        // meshes; else once a corner.
+        std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
+        std::uint32_t most = 0;
+        for (std::uint32_t i = first; i < first + 3 * triangles; ++i) {
+            least = std::min(least, vertex_number(i));
+            most = std::max(most, vertex_number(i));
+        }
+        const bool shared = most - least < 3 * triangles;
+        const std::uint32_t vertices = shared ? most - least + 1 : 3 * triangles;
+        scratch.clip.resize(vertices);
+        scratch.varyings.resize(std::size_t{vertices} * K::varyings);
+        device.for_pieces(vertices, 1024, [&](std::uint64_t begin, std::uint64_t n) {
+            for (std::uint64_t v = begin; v < begin + n; ++v) {
+                const auto i = static_cast<std::uint32_t>(v);
+                varyings out{};
+                scratch.clip[v] =
+                    kernel.vertex(shared ? least + i : vertex_number(first + i), out, spans...);
+                std::copy(out.begin(), out.end(),
+                          scratch.varyings.begin() + static_cast<std::ptrdiff_t>(v * K::varyings));
+            }
+        });
+
+        const std::uint32_t pieces = (triangles + piece_triangles - 1) / piece_triangles;
+        scratch.pieces.resize(std::max<std::size_t>(scratch.pieces.size(), pieces));
+        device.parallel(pieces, [&](std::uint32_t p) {
+            std::vector<screen_triangle>& out = scratch.pieces[p];
+            out.clear();
+            const std::uint32_t end = std::min(triangles, (p + 1) * piece_triangles);
+            for (std::uint32_t t = p * piece_triangles; t < end; ++t) {
+                std::uint32_t vertex[3];
+                for (std::uint32_t k = 0; k < 3; ++k) {
+                    vertex[k] = shared ? vertex_number(first + 3 * t + k) - least : 3 * t + k;
+                }
+                set_up(scratch.clip.data(), vertex, size, state.cull, out);
+            }
+        });
+
+        const std::uint32_t bands = (size.height + band_rows - 1) / band_rows;
+        device.parallel(bands, [&](std::uint32_t band) {
+            const std::int64_t row_first = std::int64_t{band} * band_rows;
+            const std::int64_t row_end = std::min<std::int64_t>(row_first + band_rows, size.height);
+            for (std::uint32_t p = 0; p < pieces; ++p) {
+                for (const screen_triangle& t : scratch.pieces[p]) {
+                    cover(t, size, row_first, row_end,
+                          [&](std::int64_t x, std::int64_t y, const glm::vec3& b) {
+                              shade_pixel(t, x, y, b);
+                          });
+                }
+            }
+        });
+    }
+}
+
+} // namespace skybark::cpu
