@@ -579,7 +579,7 @@ class grower {
         stem c;
         c.level = s.level + 1;
         c.base = base;
-        c.parent = r.parent; // the segment just emitted
+        c.parent = bearer(r, offset / s.length);
         c.offset = offset;
         c.parent_length = s.length;
         c.seed = next_seed(random);
@@ -609,6 +609,14 @@ class grower {
         return c;
     }
 
+    /// The segment of the piece just emitted that holds `z` = 0…1 of the stem's length.
+    [[nodiscard]] std::uint32_t bearer(const run& r, double z) const {
+        std::uint32_t last = r.parent;
+        for (std::size_t i = piece_ends_.size() - 1; i > 0 && z < piece_ends_[i - 1]; --i)
+            --last;
+        return last;
+    }
+
     /// Writes one piece as a segment; the foot of a flared trunk as several, since its radius
     /// changes within an eighth of its length.
     void emit(const stem& s, run& r, const piece& grown) {
@@ -617,6 +625,7 @@ class grower {
         const double z1 = static_cast<double>(grown.segment + 1) / res;
         glm::dvec3 from = grown.from;
         double z_from = z0;
+        piece_ends_.clear();
         const auto write = [&](double z_to) {
             const double along = (z_to - z0) / (z1 - z0);
             const glm::dvec3 to = grown.from + along * (grown.to - grown.from);
@@ -628,6 +637,7 @@ class grower {
             piece_of_wood.parent = r.parent;
             r.parent = static_cast<std::uint32_t>(segments_.size());
             segments_.push_back(piece_of_wood);
+            piece_ends_.push_back(z_to);
             from = to;
             z_from = z_to;
         };
@@ -649,6 +659,7 @@ class grower {
     double z_scale_ = 1;
     /// What splitting owes at each level: a fraction a segment adds up to whole clones.
     std::array<double, most_levels> split_error_{};
+    std::vector<double> piece_ends_; ///< z at the tip of each segment of the piece just emitted
     std::vector<stem> pending_;
     std::vector<segment> segments_;
 };
