@@ -1,0 +1,15 @@
+#pragma once
+// The Vulkan backend in one include, with the programs of the kernels that we ship. A VkDevice to
+// run it on is yours, or headless.hpp's.
+
+#include <skybark/vulkan/recorder.hpp>
+
+#include <skybark/vulkan/programs/branch_cap.hpp>
+#include <skybark/vulkan/programs/hermite_branch.hpp>
+#include <skybark/vulkan/programs/probe_image.hpp>
+#include <skybark/vulkan/programs/probe_level.hpp>
+#include <skybark/vulkan/programs/probe_map.hpp>
+#include <skybark/vulkan/programs/probe_rings.hpp>
+#include <skybark/vulkan/programs/probe_strips.hpp>
+#include <skybark/vulkan/programs/probe_surface.hpp>
+#include <skybark/vulkan/programs/ring_indices.hpp>
