@@ -68,3 +68,8 @@ vec4 slerp_at(slerp_arc arc, float t) {
     }
     return arc.a * wa + arc.b * wb;
 }
+
+vec4 slerp(vec4 a, vec4 b, float t) {
+    vec4 q = slerp_at(slerp_begin(a, b), t);
+    return q * (1.0f / sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w));
+}

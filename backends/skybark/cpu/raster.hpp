@@ -402,7 +402,9 @@ void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
                                  const glm::vec3& b) {
         const auto index =
             static_cast<std::uint64_t>(y) * size.width + static_cast<std::uint64_t>(x);
-        const float z = t.z[0] * b.x + t.z[1] * b.y + t.z[2] * b.z;
+        // Exact where the triangle is parallel to the screen; rounding never leaves 0 … 1.
+        const float z =
+            std::clamp(t.z[0] + (t.z[1] - t.z[0]) * b.y + (t.z[2] - t.z[0]) * b.z, 0.0f, 1.0f);
         if (depth != nullptr && state.depth_test && !(z <= depth[index])) {
             return;
         }

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 6ffae4d1032ccc27c51edf36816d2265a9c0a730c6df8cf14da6f9cc1957a30f
+// sha256 b655b7fc8dd347b9083a8eaeaf4eae6d7a18731ace8536080215e0fd0b9cc4a8
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -76,6 +76,11 @@ inline vec4 slerp_at(slerp_arc arc, float t) {
         wb = t < 1.0f ? wb : 1.0f;
     }
     return arc.a * wa + arc.b * wb;
+}
+
+inline vec4 slerp(vec4 a, vec4 b, float t) {
+    vec4 q = slerp_at(slerp_begin(a, b), t);
+    return q * (1.0f / sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w));
 }
 
 } // namespace skybark::shared

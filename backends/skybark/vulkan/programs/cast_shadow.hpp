@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 2c71b92589faad399d1ffc91003f44a6e488d907cdbc721f6a7f0b68f3e06c85
+// sha256 7fabf8b7a7e8975c02195255d7bb20b168e06f20dd1a92f297d6fdece6f46bc5
 #pragma once
 
 #include <skybark/kernels/cast_shadow.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b71c38aef0f3852a524ccab0990a5a90c295a5321ded5bfce252aabcb61b2fd7
+// sha256 0cba5be26c95f56c5447eae62962ab61004222a20e8529fbcb341d3031dfa11e
 #pragma once
 
 #include <skybark/kernels/clear_sky.hpp>
