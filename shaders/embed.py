@@ -22,6 +22,8 @@ ROOT = HERE.parent
 OPENGL = [
     ("kernel_map", "map.comp"),
     ("kernel_map", "levels.comp"),
+    ("kernel_strip", "expand.vert"),
+    ("kernel_ring", "expand.vert"),
     ("kernel_strip", "strips.geom"),
     ("kernel_ring", "rings.geom"),
     ("kernel_fragment", "draw.vert"),

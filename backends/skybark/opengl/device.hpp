@@ -1,0 +1,368 @@
+#pragma once
+// The device: an OpenGL 4.5 core context as a Skybark backend.
+//
+// The context is the caller's, or one that headless.hpp made. It must be current in the thread that
+// calls, unless its description says how to make it so. Every state of the caller's is as it was
+// after each call, but for these:
+//  - errors that were pending before a call may be gone afterwards (OpenGL has one flag for all);
+//  - the caller's queries count what we draw, and while one of PRIMITIVES_GENERATED or
+//    TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN is active, `expand` fails with error_code::unavailable;
+//  - conditional rendering must not be active: OpenGL does not tell, and would drop our draws.
+//
+// Buffers are OpenGL's, images are its 2-D textures, and both can be wrapped around the caller's.
+// `expand` always goes through a geometry shader and transform feedback, `expand_rings` likewise.
+
+#include <skybark/opengl/recorder.hpp>
+
+namespace skybark::opengl {
+
+class device {
+  public:
+    using backend_tag = skybark::backend_tag;
+    using buffer = opengl::buffer;
+    using image = opengl::image;
+    using recorder = opengl::recorder;
+
+    /// Fails with error_code::unavailable where the context cannot do what is needed.
+    [[nodiscard]] static result<device> create(description given);
+
+    [[nodiscard]] std::string_view name() const noexcept { return "opengl"; }
+    [[nodiscard]] std::string device_name() const { return context_->renderer; }
+    [[nodiscard]] device_limits limits() const noexcept { return context_->limits; }
+    [[nodiscard]] device_traffic traffic() const noexcept { return context_->traffic; }
+
+    [[nodiscard]] result<buffer> create_buffer(std::uint64_t bytes);
+    [[nodiscard]] result<image> create_image(const image_description& description);
+
+    /// The caller's buffer object of `bytes` bytes. It stays the caller's. To be uploaded to, it
+    /// must have been made with GL_DYNAMIC_STORAGE_BIT, or by glBufferData.
+    [[nodiscard]] buffer wrap_buffer(gl::handle name, std::uint64_t bytes) const {
+        return {nullptr, name, bytes};
+    }
+    /// The caller's GL_TEXTURE_2D with this level 0. It stays the caller's.
+    [[nodiscard]] image wrap_image(gl::handle name, const image_description& description) const {
+        return {nullptr, name, description};
+    }
+
+    [[nodiscard]] result<void> upload(const buffer& to, std::uint64_t offset,
+                                      std::span<const std::byte> bytes);
+    [[nodiscard]] result<void> download(const buffer& from, std::uint64_t offset,
+                                        std::span<std::byte> bytes);
+    [[nodiscard]] result<void> upload(const image& to, std::span<const std::byte> bytes);
+    [[nodiscard]] result<void> download(const image& from, std::span<std::byte> bytes);
+
+    [[nodiscard]] result<recorder> begin();
+    [[nodiscard]] result<void> submit(recorder& recorded);
+
+  private:
+    explicit device(std::unique_ptr<detail::context> context) : context_(std::move(context)) {}
+
+    std::unique_ptr<detail::context> context_;
+};
+
+namespace detail {
+
+[[nodiscard]] inline bound_range bound(const buffer_view<device>& view) {
+    if (view.buffer == nullptr) {
+        return {};
+    }
+    assert(view.offset + view.size <= view.buffer->size_bytes() && "a view outside its buffer");
+    return {view.buffer->name(), static_cast<std::ptrdiff_t>(view.offset),
+            static_cast<std::ptrdiff_t>(view.size)};
+}
+
+template <std::size_t N>
+[[nodiscard]] std::array<bound_range, N> bound(const std::array<buffer_view<device>, N>& views) {
+    std::array<bound_range, N> ranges;
+    for (std::size_t i = 0; i < N; ++i) {
+        ranges[i] = bound(views[i]);
+    }
+    return ranges;
+}
+
+/// A kernel's parameters as the bytes of its block: none where it has no members.
+template <kernel K>
+[[nodiscard]] std::span<const std::byte> bytes_of(const K& k) {
+    return std::is_empty_v<K> ? std::span<const std::byte>{} : std::as_bytes(std::span(&k, 1));
+}
+
+} // namespace detail
+
+// ---- device -------------------------------------------------------------------------------------
+
+inline result<device> device::create(description given) {
+    auto context = detail::context::create(std::move(given));
+    if (!context) {
+        return failure(context.error());
+    }
+    return device(std::move(*context));
+}
+
+inline result<buffer> device::create_buffer(std::uint64_t bytes) {
+    if (auto entered = context_->enter(); !entered) {
+        return failure(entered.error());
+    }
+    auto name = context_->create_buffer(bytes);
+    if (!name) {
+        return failure(name.error());
+    }
+    return buffer(context_.get(), *name, bytes);
+}
+
+inline result<image> device::create_image(const image_description& description) {
+    const auto [width, height, format] = description;
+    const std::string text =
+        "an image of " + std::to_string(width) + " x " + std::to_string(height) + " pixels";
+    const std::uint32_t most = context_->limits.max_image_size;
+    if (width == 0 || height == 0 || width > most || height > most) {
+        return fail(error_code::out_of_memory, "The opengl backend cannot make " + text +
+                                                   "; each side must be 1 to " +
+                                                   std::to_string(most) + ".");
+    }
+    if (auto entered = context_->enter(); !entered) {
+        return failure(entered.error());
+    }
+    context_->forget_errors();
+    gl::handle name = 0;
+    context_->gl.create_textures(gl::texture_2d, 1, &name);
+    context_->gl.texture_storage_2d(name, 1, detail::format_of(format).internal,
+                                    static_cast<int>(width), static_cast<int>(height));
+    image made(context_.get(), name, description);
+    if (auto done = context_->check("making " + text); !done) {
+        return failure(done.error());
+    }
+    return made;
+}
+
+inline result<void> device::upload(const buffer& to, std::uint64_t offset,
+                                   std::span<const std::byte> bytes) {
+    assert(offset + bytes.size() <= to.size_bytes() && "an upload beyond the buffer's end");
+    if (auto entered = context_->enter(); !entered || bytes.empty()) {
+        return entered;
+    }
+    context_->forget_errors();
+    context_->gl.named_buffer_sub_data(to.name(), static_cast<std::ptrdiff_t>(offset),
+                                       static_cast<std::ptrdiff_t>(bytes.size()), bytes.data());
+    context_->traffic.up += bytes.size();
+    return context_->check("uploading to a buffer");
+}
+
+inline result<void> device::download(const buffer& from, std::uint64_t offset,
+                                     std::span<std::byte> bytes) {
+    assert(offset + bytes.size() <= from.size_bytes() && "a download beyond the buffer's end");
+    if (auto entered = context_->enter(); !entered || bytes.empty()) {
+        return entered;
+    }
+    context_->forget_errors();
+    context_->gl.get_named_buffer_sub_data(from.name(), static_cast<std::ptrdiff_t>(offset),
+                                           static_cast<std::ptrdiff_t>(bytes.size()), bytes.data());
+    context_->traffic.down += bytes.size();
+    return context_->check("downloading from a buffer");
+}
+
+inline result<void> device::upload(const image& to, std::span<const std::byte> bytes) {
+    const image_description what = to.description();
+    assert(bytes.size() == detail::bytes_of(what) && "an upload of another size than the image's");
+    if (auto entered = context_->enter(); !entered) {
+        return entered;
+    }
+    context_->forget_errors();
+    const detail::pixel_format format = detail::format_of(what.format);
+    {
+        const detail::saved_pixel_store packed(context_->gl, true);
+        context_->gl.texture_sub_image_2d(to.name(), 0, 0, 0, static_cast<int>(what.width),
+                                          static_cast<int>(what.height), format.format, format.type,
+                                          bytes.data());
+    }
+    context_->traffic.up += bytes.size();
+    return context_->check("uploading to an image");
+}
+
+inline result<void> device::download(const image& from, std::span<std::byte> bytes) {
+    const image_description what = from.description();
+    assert(bytes.size() == detail::bytes_of(what) && "a download of another size than the image's");
+    if (auto entered = context_->enter(); !entered) {
+        return entered;
+    }
+    context_->forget_errors();
+    const detail::pixel_format format = detail::format_of(what.format);
+    {
+        const detail::saved_pixel_store packed(context_->gl, false);
+        // The size in bytes is an int. A larger image has more than the call could copy.
+        const auto most = static_cast<int>(std::min<std::size_t>(bytes.size(), 0x7fffffff));
+        context_->gl.get_texture_image(from.name(), 0, format.format, format.type, most,
+                                       bytes.data());
+    }
+    context_->traffic.down += bytes.size();
+    return context_->check("downloading from an image");
+}
+
+inline result<recorder> device::begin() {
+    if (auto entered = context_->enter(); !entered) {
+        return failure(entered.error());
+    }
+    context_->forget_errors();
+    return recorder(*context_);
+}
+
+inline result<void> device::submit(recorder& recorded) {
+    assert(recorded.context_ == context_.get() && "a recorder of another device");
+    if (auto entered = context_->enter(); !entered) {
+        return entered;
+    }
+    context_->detach();
+    context_->gl.finish();
+    auto done = context_->check("running what was recorded");
+    if (recorded.error_ && (done || done.error().code != error_code::device_lost)) {
+        return failure(*recorded.error_);
+    }
+    return done;
+}
+
+// ---- recorder -----------------------------------------------------------------------------------
+
+inline void recorder::upload(const buffer_view<device>& to, std::span<const std::byte> bytes) {
+    assert(bytes.size() <= to.size && "an upload beyond the view's end");
+    if (bytes.empty()) {
+        return;
+    }
+    attempt([&]() -> result<void> {
+        const detail::bound_range range = detail::bound(to);
+        context_->gl.named_buffer_sub_data(range.buffer, range.offset,
+                                           static_cast<std::ptrdiff_t>(bytes.size()), bytes.data());
+        context_->traffic.up += bytes.size();
+        return {};
+    });
+}
+
+inline void recorder::copy(const buffer_view<device>& from, const buffer_view<device>& to) {
+    assert(from.size <= to.size && "a copy beyond the view's end");
+    if (from.size == 0) {
+        return;
+    }
+    attempt([&]() -> result<void> {
+        const detail::bound_range source = detail::bound(from);
+        const detail::bound_range target = detail::bound(to);
+        context_->gl.copy_named_buffer_sub_data(source.buffer, target.buffer, source.offset,
+                                                target.offset, source.size);
+        return {};
+    });
+}
+
+template <map_kernel K>
+void recorder::map(const K& kernel, const bindings<device, K>& buffers, range elements) {
+    attempt([&] {
+        const auto ranges = detail::bound(buffers);
+        return detail::map(*context_, program<K>::map_comp, {detail::bytes_of(kernel), ranges},
+                           {elements.first, elements.count, {}});
+    });
+}
+
+template <map_kernel K>
+void recorder::map(const K& kernel, const bindings<device, K>& buffers,
+                   std::span<const range> ranges) {
+    attempt([&] {
+        const auto bound = detail::bound(buffers);
+        return detail::map_levels(*context_, program<K>::map_comp, program<K>::levels_comp,
+                                  {detail::bytes_of(kernel), bound}, ranges);
+    });
+}
+
+template <map_kernel K>
+void recorder::map(const K& kernel, const bindings<device, K>& buffers,
+                   const counted<device>& elements) {
+    attempt([&] {
+        const auto ranges = detail::bound(buffers);
+        return detail::map(*context_, program<K>::map_comp, {detail::bytes_of(kernel), ranges},
+                           {0, elements.limit, detail::bound(elements.count)});
+    });
+}
+
+template <strip_kernel K>
+void recorder::expand_elements(const K& kernel, const bindings<device, K>& buffers,
+                               const detail::element_range& elements,
+                               const triangle_list<device>& out) {
+    static_assert(sizeof(typename K::vertex) <= detail::max_feedback_vertex_bytes,
+                  "transform feedback takes at most 64 components a vertex");
+    attempt([&] {
+        const auto ranges = detail::bound(buffers);
+        detail::expansion expansion;
+        expansion.vertex_text = program<K>::expand_vert;
+        expansion.geometry_text = program<K>::strips_geom;
+        expansion.primitive = gl::triangles;
+        expansion.parts = detail::strip_parts(kernel.strips(), kernel.strip_triangles(),
+                                              sizeof(typename K::vertex), out.policy);
+        expansion.flags = out.policy == padding::degenerate ? 2u : 0u;
+        expansion.vertices = detail::bound(out.vertices);
+        expansion.count = detail::bound(out.count);
+        return detail::expand(*context_, {detail::bytes_of(kernel), ranges}, elements, expansion);
+    });
+}
+
+template <strip_kernel K>
+void recorder::expand(const K& kernel, const bindings<device, K>& buffers, range elements,
+                      const triangle_list<device>& out) {
+    expand_elements(kernel, buffers, {elements.first, elements.count, {}}, out);
+}
+
+template <strip_kernel K>
+void recorder::expand(const K& kernel, const bindings<device, K>& buffers,
+                      const counted<device>& elements, const triangle_list<device>& out) {
+    expand_elements(kernel, buffers, {0, elements.limit, detail::bound(elements.count)}, out);
+}
+
+template <ring_kernel K>
+void recorder::expand_rings(const K& kernel, const bindings<device, K>& buffers, range elements,
+                            const buffer_view<device>& out) {
+    static_assert(sizeof(typename K::vertex) <= detail::max_feedback_vertex_bytes,
+                  "transform feedback takes at most 64 components a vertex");
+    attempt([&] {
+        const auto ranges = detail::bound(buffers);
+        detail::expansion expansion;
+        expansion.vertex_text = program<K>::expand_vert;
+        expansion.geometry_text = program<K>::rings_geom;
+        expansion.primitive = gl::points;
+        expansion.parts = detail::ring_parts(kernel.ring_vertices(), sizeof(typename K::vertex));
+        expansion.vertices = detail::bound(out);
+        return detail::expand(*context_, {detail::bytes_of(kernel), ranges},
+                              {elements.first, elements.count, {}}, expansion);
+    });
+}
+
+template <draw_kernel K>
+void recorder::draw(const K& kernel, const bindings<device, K>& buffers,
+                    const image_bindings<device, K>& images, const draw_geometry<device>& geometry,
+                    const draw_target<device>& target, const draw_state& state) {
+    static_assert(K::images <= detail::max_kernel_images, "a kernel reads at most eight images");
+    assert((target.color != nullptr || target.depth != nullptr) && "a draw without a target");
+    attempt([&] {
+        const auto ranges = detail::bound(buffers);
+        std::array<detail::image_binding, K::images> textures;
+        for (std::size_t i = 0; i < textures.size(); ++i) {
+            assert(images[i].image != nullptr && "a kernel given too few images");
+            textures[i] = {images[i].image->name(), images[i].filter == filter_mode::linear,
+                           images[i].wrap == wrap_mode::repeat};
+        }
+        const image_description size =
+            (target.color != nullptr ? target.color : target.depth)->description();
+        detail::draw_call call;
+        call.vertex_text = program<K>::draw_vert;
+        call.fragment_text = program<K>::draw_frag;
+        call.images = textures;
+        call.indices = detail::bound(geometry.indices);
+        call.length = detail::bound(geometry.length);
+        call.first = geometry.first;
+        call.count = geometry.count;
+        call.base_vertex = geometry.base_vertex;
+        call.color = target.color != nullptr ? target.color->name() : 0;
+        call.depth = target.depth != nullptr ? target.depth->name() : 0;
+        call.width = size.width;
+        call.height = size.height;
+        call.clear_color = target.clear_color;
+        call.clear_depth = target.clear_depth;
+        call.state = state;
+        return detail::draw(*context_, {detail::bytes_of(kernel), ranges}, call);
+    });
+}
+
+} // namespace skybark::opengl

@@ -1,0 +1,19 @@
+#pragma once
+// The OpenGL backend: OpenGL 4.5 core, through geometry shaders, transform feedback and compute.
+//
+//     auto device = skybark::opengl::device::create({[](const char* name, void*) {
+//         return glfwGetProcAddress(name); }});
+//
+// It works in the context that is current and restores every state that it touches. To have a
+// context made, include headless.hpp beside this.
+
+#include <skybark/opengl/device.hpp>
+#include <skybark/opengl/programs/branch_cap.hpp>
+#include <skybark/opengl/programs/hermite_branch.hpp>
+#include <skybark/opengl/programs/probe_image.hpp>
+#include <skybark/opengl/programs/probe_level.hpp>
+#include <skybark/opengl/programs/probe_map.hpp>
+#include <skybark/opengl/programs/probe_rings.hpp>
+#include <skybark/opengl/programs/probe_strips.hpp>
+#include <skybark/opengl/programs/probe_surface.hpp>
+#include <skybark/opengl/programs/ring_indices.hpp>

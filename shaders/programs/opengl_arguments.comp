@@ -1,0 +1,27 @@
+#version 450
+// Arguments of an indirect call, from the count that only the device knows.
+layout(local_size_x = 1) in;
+layout(std140, binding = 0) uniform skybark_block {
+    uvec4 skybark_header;   // x: 0 dispatch, 1 draw arrays, 2 draw elements; y: skip, z: most, w: each
+    uvec4 skybark_geometry; // x: first vertex or index, y: base vertex
+};
+layout(std430, binding = 9) writeonly buffer arguments_buffer { uint arguments[]; };
+layout(std430, binding = 10) readonly buffer length_buffer { uint length[]; };
+
+void main() {
+    uint count = length[0] > skybark_header.y ? length[0] - skybark_header.y : 0u;
+    count = min(count, skybark_header.z);
+    if (skybark_header.x == 0u) {
+        uint groups = count / 64u + (count % 64u != 0u ? 1u : 0u);
+        uint columns = clamp(groups, 1u, 65535u);
+        arguments[0] = columns;
+        arguments[1] = groups / columns + (groups % columns != 0u ? 1u : 0u);
+        arguments[2] = 1u;
+        return;
+    }
+    arguments[0] = count * skybark_header.w;
+    arguments[1] = 1u;
+    arguments[2] = skybark_geometry.x;
+    arguments[3] = skybark_header.x == 1u ? 0u : skybark_geometry.y;
+    arguments[4] = 0u;
+}
