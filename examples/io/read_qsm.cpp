@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace skybark::io {
 
@@ -84,45 +85,57 @@ result<layout> read_header(std::string_view line, std::size_t number, std::strin
     return l;
 }
 
-/// Maps IDs to rows. IDs that count up by one, as most files have them, need no table.
+/// Maps IDs to rows: IDs that lie close together, as most files have them, by a table of their
+/// range, others by a sorted list.
 class id_table {
   public:
-    explicit id_table(const std::vector<std::int64_t>& ids) : ids_(&ids) {
-        for (std::size_t i = 1; i < ids.size(); ++i)
-            counting_ = counting_ && ids[i - 1] < ids[i] && ids[i] - 1 == ids[i - 1];
-        if (counting_)
+    explicit id_table(const std::vector<std::int64_t>& ids) {
+        const auto [least, greatest] = std::minmax_element(ids.begin(), ids.end());
+        least_ = *least;
+        const std::uint64_t range = above_least(*greatest);
+        constexpr std::uint64_t sparse = 4; // a table no larger than the list would be
+        if (range / sparse < ids.size()) {
+            dense_.assign(static_cast<std::size_t>(range) + 1, trees::none);
+            for (std::uint32_t row = 0; row < ids.size(); ++row) {
+                std::uint32_t& entry = dense_[static_cast<std::size_t>(above_least(ids[row]))];
+                if (entry == trees::none)
+                    entry = row;
+                else
+                    repeated_ = std::min(repeated_, row);
+            }
             return;
-        by_id_.resize(ids.size());
-        for (std::uint32_t i = 0; i < by_id_.size(); ++i)
-            by_id_[i] = i;
-        std::sort(by_id_.begin(), by_id_.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return ids[a] != ids[b] ? ids[a] < ids[b] : a < b;
-        });
-    }
-    /// A row whose ID an earlier row has too, or `none`.
-    [[nodiscard]] std::uint32_t repeated() const {
-        for (std::size_t i = 1; i < by_id_.size(); ++i)
-            if ((*ids_)[by_id_[i - 1]] == (*ids_)[by_id_[i]])
-                return by_id_[i];
-        return trees::none;
-    }
-    [[nodiscard]] std::uint32_t find(std::int64_t id) const {
-        if (counting_) {
-            if (ids_->empty() || id < ids_->front() || id > ids_->back())
-                return trees::none;
-            return static_cast<std::uint32_t>(static_cast<std::uint64_t>(id) -
-                                              static_cast<std::uint64_t>(ids_->front()));
         }
+        sorted_.reserve(ids.size());
+        for (std::uint32_t row = 0; row < ids.size(); ++row)
+            sorted_.emplace_back(ids[row], row);
+        std::sort(sorted_.begin(), sorted_.end());
+        for (std::size_t i = 1; i < sorted_.size(); ++i)
+            if (sorted_[i - 1].first == sorted_[i].first)
+                repeated_ = std::min(repeated_, sorted_[i].second);
+    }
+    /// The first row whose ID an earlier row has too, or `none`.
+    [[nodiscard]] std::uint32_t repeated() const { return repeated_; }
+    /// The first row of that ID, or `none`.
+    [[nodiscard]] std::uint32_t find(std::int64_t id) const {
+        if (!dense_.empty())
+            return id >= least_ && above_least(id) < dense_.size()
+                       ? dense_[static_cast<std::size_t>(above_least(id))]
+                       : trees::none;
         const auto at =
-            std::lower_bound(by_id_.begin(), by_id_.end(), id,
-                             [&](std::uint32_t row, std::int64_t v) { return (*ids_)[row] < v; });
-        return at != by_id_.end() && (*ids_)[*at] == id ? *at : trees::none;
+            std::lower_bound(sorted_.begin(), sorted_.end(), std::pair(id, std::uint32_t{0}));
+        return at != sorted_.end() && at->first == id ? at->second : trees::none;
     }
 
   private:
-    const std::vector<std::int64_t>* ids_;
-    std::vector<std::uint32_t> by_id_;
-    bool counting_ = true;
+    /// How far `id` is above the least ID; never overflows.
+    [[nodiscard]] std::uint64_t above_least(std::int64_t id) const {
+        return static_cast<std::uint64_t>(id) - static_cast<std::uint64_t>(least_);
+    }
+
+    std::int64_t least_ = 0;
+    std::uint32_t repeated_ = trees::none;
+    std::vector<std::uint32_t> dense_;
+    std::vector<std::pair<std::int64_t, std::uint32_t>> sorted_;
 };
 
 class qsm_parser {

@@ -153,6 +153,12 @@ std::string_view without_mark(std::string_view text) {
 }
 
 std::vector<std::uint32_t> find_cycle(const std::vector<trees::segment>& segments) {
+    // most files list parents first, which leaves no room for a cycle
+    bool ordered = true;
+    for (std::uint32_t i = 0; i < segments.size() && ordered; ++i)
+        ordered = segments[i].parent == trees::none || segments[i].parent < i;
+    if (ordered)
+        return {};
     // which walk towards the root came by first; a walk that meets itself went round
     std::vector<std::uint32_t> walk_of(segments.size(), trees::none);
     for (std::uint32_t start = 0; start < segments.size(); ++start) {

@@ -93,6 +93,20 @@ TEST(read_qsm, finds_columns_by_name_ids_in_any_order) {
     EXPECT_EQ((*same)[0].radius, 1.0f);
 }
 
+TEST(read_qsm, takes_ids_from_one_end_of_the_range_to_the_other) {
+    const std::string least = "-9223372036854775808";
+    const std::string greatest = "9223372036854775807";
+    const std::string rest = ",0,0,0,0,0,1,1\n";
+    const auto read = io::parse_qsm(
+        header + least + ",5" + rest + "5,-1" + rest + greatest + "," + least + rest, "t");
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ((*read)[0].parent, 1u);
+    EXPECT_EQ((*read)[2].parent, 0u);
+    EXPECT_TRUE(has(
+        complaint(header + least + ",-1" + rest + greatest + ",-1" + rest + least + ",-1" + rest),
+        "Line 4 of \"tree.csv\": the ID -9223372036854775808 is that of line 2"));
+}
+
 TEST(read_qsm, takes_parent_zero_for_a_root_where_ids_begin_at_one) {
     const auto read = io::parse_qsm(header + "1,0,0,0,0,0,0,1,1\n2,1,0,0,1,0,0,2,1\n", "t");
     ASSERT_TRUE(read) << read.error().message;
