@@ -189,9 +189,11 @@ class cursor {
         const std::string_view text = word();
         const auto parsed = parse_integer(text);
         if (!parsed || *parsed < low || *parsed > high)
-            return wrong(std::string(what) + ": " + instead(text) +
-                         "; expected a whole number from " + std::to_string(low) + " to " +
-                         std::to_string(high) + ".");
+            return wrong(std::string(what) + ": " + instead(text) + "; expected " +
+                         (low == high ? std::to_string(low)
+                                      : "a whole number from " + std::to_string(low) + " to " +
+                                            std::to_string(high)) +
+                         ".");
         value = *parsed;
         return true;
     }

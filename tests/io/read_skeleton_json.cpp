@@ -107,7 +107,8 @@ TEST(read_skeleton_json, names_the_line_of_a_bad_segment) {
 TEST(read_skeleton_json, names_the_line_of_a_bad_tree) {
     EXPECT_TRUE(has(complaint(" \n"), "\"tree.json\" is empty"));
     EXPECT_TRUE(has(complaint("[]"), "expected \"{\" at the beginning of a tree"));
-    EXPECT_TRUE(has(complaint("{\"skybark_tree\":2}"), "expected a whole number from 1 to 1"));
+    EXPECT_TRUE(
+        has(complaint("{\"skybark_tree\":2}"), "\"skybark_tree\": there is \"2\"; expected 1."));
     EXPECT_TRUE(has(complaint("{}"), "no member \"skybark_tree\""));
     EXPECT_TRUE(has(complaint("{\"skybark_tree\":1}"), "neither \"segments\" nor \"species\""));
     EXPECT_TRUE(has(
