@@ -145,7 +145,8 @@ inline constexpr std::uint32_t max_rounds = 60000;
     std::uint32_t rounds = 0;
     std::size_t i = 0;
     for (; i < ranges.size() && ranges[i].count <= small_range; ++i) {
-        rounds += 1 + ranges[i].count / 256;
+        // One of the outer loop, one more where the inner loop ends, and those of the inner loop.
+        rounds += 2 + (ranges[i].count + 255) / 256;
         if (rounds > max_rounds) {
             break;
         }
