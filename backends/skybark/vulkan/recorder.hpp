@@ -779,7 +779,7 @@ class recorder {
         const std::uint64_t most = !indexed ? ~0u : indices > what.first ? indices - what.first : 0;
         const slice arguments = scratch(sizeof(VkDrawIndexedIndirectCommand));
         detail::compute_call pass{draw_arguments_comp, "skybark: draw arguments", {}, {}};
-        pass.push.set_header({what.first, what.base_vertex,
+        pass.push.set_header({what.first + first_index(what), what.base_vertex,
                               static_cast<std::uint32_t>(std::min<std::uint64_t>(most, ~0u)),
                               indexed ? 1u : 0u});
         pass.buffers[vertices_binding] = arguments;
@@ -824,19 +824,24 @@ class recorder {
         call().set_scissor(commands(), 0, 1, &info.renderArea);
     }
 
+    /// Where the indices start in their buffer. It is bound from its start on: lavapipe's indirect
+    /// draws forget the offset of an index buffer.
+    [[nodiscard]] static std::uint32_t first_index(const detail::draw_call& what) {
+        return static_cast<std::uint32_t>(what.indices.offset / 4);
+    }
+
     void issue(const detail::draw_call& what, const slice& arguments) {
         const bool indexed = what.indices.buffer != VK_NULL_HANDLE;
         const bool indirect = arguments.buffer != VK_NULL_HANDLE;
         if (indexed) {
-            call().bind_index_buffer(commands(), what.indices.buffer, what.indices.offset,
-                                     VK_INDEX_TYPE_UINT32);
+            call().bind_index_buffer(commands(), what.indices.buffer, 0, VK_INDEX_TYPE_UINT32);
         }
         if (indexed && indirect) {
             call().draw_indexed_indirect(commands(), arguments.buffer, arguments.offset, 1, 0);
         } else if (indirect) {
             call().draw_indirect(commands(), arguments.buffer, arguments.offset, 1, 0);
         } else if (indexed) {
-            call().draw_indexed(commands(), what.count, 1, what.first,
+            call().draw_indexed(commands(), what.count, 1, what.first + first_index(what),
                                 static_cast<std::int32_t>(what.base_vertex), 0);
         } else {
             call().draw(commands(), what.count, 1, what.first + what.base_vertex, 0);
