@@ -22,8 +22,8 @@ struct picture_options {
     std::uint32_t height = 800;
     std::uint32_t supersampling = 3; ///< samples a pixel in each direction
     bool skeleton = false;           ///< plain wood in place of bark
-    double sun_azimuth = 285;        ///< degrees from north, clockwise
-    double sun_elevation = 34;       ///< degrees
+    double sun_azimuth = 262;        ///< degrees from north, clockwise
+    double sun_elevation = 38;       ///< degrees
     float exposure = 0.046f;
 };
 
@@ -52,7 +52,7 @@ inline constexpr std::uint32_t shadow_texels = 4096;
     scene.from_clip = glm::inverse(scene.to_clip);
     scene.camera = glm::vec4(eye, 0);
 
-    scene.sky = daylight(direction_to_sun(options.sun_azimuth, options.sun_elevation), 2.8);
+    scene.sky = daylight(direction_to_sun(options.sun_azimuth, options.sun_elevation), 2.2);
     set_ambient(scene, glm::vec3(0.10f, 0.11f, 0.05f));
 
     const glm::vec3 to_sun(scene.sky.to_sun);

@@ -29,18 +29,25 @@ struct screen_triangle {
     bool front = true;
 };
 
+/// Neighbouring triangles of a draw, and the rows that they touch, so that bands skip them at once.
+struct screen_piece {
+    std::vector<screen_triangle> triangles;
+    std::int64_t y_least = 0; ///< 1/256 pixel
+    std::int64_t y_most = 0;
+};
+
 /// Memory that draws use again.
 struct raster_scratch {
     std::vector<glm::vec4> clip;
     std::vector<glm::vec4> varyings;
-    std::vector<std::vector<screen_triangle>> pieces;
+    std::vector<screen_piece> pieces;
 };
 
 namespace raster {
 
 inline constexpr std::int64_t subpixels = 256;
 inline constexpr std::uint32_t batch_triangles = 1u << 16;
-inline constexpr std::uint32_t piece_triangles = 2048;
+inline constexpr std::uint32_t piece_triangles = 512;
 inline constexpr std::uint32_t band_rows = 32;
 /// Clip-space x and y may reach this times w before they are clipped: edge functions of images up
 /// to 2^15 pixels then stay below 2^58.
@@ -463,15 +470,21 @@ void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
         const std::uint32_t pieces = (triangles + piece_triangles - 1) / piece_triangles;
         scratch.pieces.resize(std::max<std::size_t>(scratch.pieces.size(), pieces));
         device.parallel(pieces, [&](std::uint32_t p) {
-            std::vector<screen_triangle>& out = scratch.pieces[p];
-            out.clear();
+            screen_piece& piece = scratch.pieces[p];
+            piece.triangles.clear();
             const std::uint32_t end = std::min(triangles, (p + 1) * piece_triangles);
             for (std::uint32_t t = p * piece_triangles; t < end; ++t) {
                 std::uint32_t vertex[3];
                 for (std::uint32_t k = 0; k < 3; ++k) {
                     vertex[k] = shared ? vertex_number(first + 3 * t + k) - least : 3 * t + k;
                 }
-                set_up(scratch.clip.data(), vertex, size, state.cull, out);
+                set_up(scratch.clip.data(), vertex, size, state.cull, piece.triangles);
+            }
+            piece.y_least = std::numeric_limits<std::int64_t>::max();
+            piece.y_most = std::numeric_limits<std::int64_t>::min();
+            for (const screen_triangle& t : piece.triangles) {
+                piece.y_least = std::min({piece.y_least, t.y[0], t.y[1], t.y[2]});
+                piece.y_most = std::max({piece.y_most, t.y[0], t.y[1], t.y[2]});
             }
         });
 
@@ -480,7 +493,11 @@ void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
             const std::int64_t row_first = std::int64_t{band} * band_rows;
             const std::int64_t row_end = std::min<std::int64_t>(row_first + band_rows, size.height);
             for (std::uint32_t p = 0; p < pieces; ++p) {
-                for (const screen_triangle& t : scratch.pieces[p]) {
+                const screen_piece& piece = scratch.pieces[p];
+                if (piece.y_most < row_first * subpixels || piece.y_least > row_end * subpixels) {
+                    continue;
+                }
+                for (const screen_triangle& t : piece.triangles) {
                     cover(t, size, row_first, row_end,
                           [&](std::int64_t x, std::int64_t y, const glm::vec3& b) {
                               shade_pixel(t, x, y, b);

@@ -87,7 +87,7 @@ class branch_mesh {
     void record(recorder& to) const {
         for (const part& p : parts_) {
             if (p.caps) {
-                to.expand_rings(cap_, {view<B>(p.segments), view<B>(p.ends), view<B>(corners_)},
+                to.expand_rings(cap_, {view<B>(p.segments), view<B>(p.ends), view<B>(*corners_)},
                                 range{0, p.elements}, view<B>(p.vertices));
             } else if (options_.form == mesh_form::rings) {
                 to.expand_rings(tube_, tube_bindings(p), range{0, p.elements}, view<B>(p.vertices));
@@ -108,7 +108,7 @@ class branch_mesh {
             return list;
         }
         const std::uint32_t indices = 3 * p.triangles;
-        return {view<B, std::uint32_t>(p.caps ? cap_indices_ : tube_indices_, 0, indices),
+        return {view<B, std::uint32_t>(p.caps ? *cap_indices_ : *tube_indices_, 0, indices),
                 0,
                 indices,
                 0,
@@ -163,7 +163,7 @@ class branch_mesh {
     }
 
     [[nodiscard]] bindings<B, kernels::hermite_branch> tube_bindings(const part& p) const {
-        return {view<B>(p.segments), view<B>(p.ends), view<B>(corners_)};
+        return {view<B>(p.segments), view<B>(p.ends), view<B>(*corners_)};
     }
 
     [[nodiscard]] std::uint64_t total(std::uint32_t part::*of) const {
@@ -388,7 +388,7 @@ class branch_mesh {
     /// The index buffer that the largest part needs, made on the device from one element's.
     template <class Kernel>
     [[nodiscard]] result<void> make_indices(B& device, const Kernel& kernel, bool caps,
-                                            buffer& indices) {
+                                            std::optional<buffer>& indices) {
         std::uint32_t most = 0;
         for (const part& p : parts_) {
             most = p.caps == caps ? std::max(most, p.elements) : most;
@@ -410,7 +410,7 @@ class branch_mesh {
         const kernels::ring_indices fill{static_cast<std::uint32_t>(pattern.size()),
                                          kernel.ring_vertices(), 0};
         return run(device, [&](recorder& r) {
-            r.map(fill, {view<B>(*pattern_buffer), view<B>(indices)},
+            r.map(fill, {view<B>(*pattern_buffer), view<B>(*indices)},
                   range{0, static_cast<std::uint32_t>(count)});
         });
     }
@@ -429,7 +429,7 @@ class branch_mesh {
         to.resize(before + std::size_t{3} * p.triangles);
         const std::span<std::uint32_t> added = std::span(to).subspan(before);
         auto done =
-            read_back<B, std::uint32_t>(device, p.caps ? cap_indices_ : tube_indices_, added);
+            read_back<B, std::uint32_t>(device, p.caps ? *cap_indices_ : *tube_indices_, added);
         for (std::uint32_t& index : added) {
             index += first;
         }
@@ -439,9 +439,9 @@ class branch_mesh {
     branch_mesh_options options_;
     kernels::hermite_branch tube_;
     kernels::branch_cap cap_;
-    buffer corners_;
-    buffer tube_indices_;
-    buffer cap_indices_;
+    std::optional<buffer> corners_; // all three are there after create
+    std::optional<buffer> tube_indices_;
+    std::optional<buffer> cap_indices_;
     std::vector<part> parts_;
 };
 

@@ -1,0 +1,9 @@
+#pragma once
+// Skybark: GPU algorithms for natural scenes. The contract and the algorithms; add a backend:
+// <skybark/cpu/cpu.hpp>, <skybark/opengl/opengl.hpp> or <skybark/vulkan/vulkan.hpp>.
+
+#include <skybark/core/backend.hpp>
+#include <skybark/core/validated.hpp>
+#include <skybark/trees/branch_mesh.hpp>
+#include <skybark/trees/build_skeleton.hpp>
+#include <skybark/trees/species.hpp>
