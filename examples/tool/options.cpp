@@ -1,0 +1,134 @@
+#include "options.hpp"
+
+#include <algorithm>
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <io/text_input.hpp>
+
+namespace skybark::tool {
+
+namespace {
+
+/// "1280x800". Sides are limited by what a PNG writer and most devices can do.
+result<std::pair<std::uint32_t, std::uint32_t>> parse_size(std::string_view text) {
+    constexpr std::uint32_t longest = 16384;
+    const std::size_t times = text.find_first_of("xX");
+    if (times != std::string_view::npos) {
+        const auto width = whole_number("--size", text.substr(0, times), 1, longest);
+        const auto height = whole_number("--size", text.substr(times + 1), 1, longest);
+        if (width && height) {
+            return std::pair{*width, *height};
+        }
+    }
+    return fail(error_code::bad_input, "--size is " + io::in_quotes(text) +
+                                           "; expected WIDTHxHEIGHT such as 1280x800, each from 1 "
+                                           "to 16384 pixels.");
+}
+
+} // namespace
+
+void add_backend_options(CLI::App& to, common_words& words) {
+    to.add_option("--backend", words.backend, "What computes: cpu, opengl or vulkan (cpu)")
+        ->type_name("B");
+    to.add_option("--device", words.device,
+                  "Which of the backend's devices, as 'skybark devices' "
+                  "numbers them (the backend's choice)")
+        ->type_name("N");
+}
+
+void add_quiet(CLI::App& to, common_words& words) {
+    to.add_flag("--quiet", words.quiet, "Say nothing but what went wrong");
+}
+
+void add_common_options(CLI::App& to, common_words& words) {
+    add_backend_options(to, words);
+    to.add_option("--size", words.size, "Pixels of a picture (1280x800)")->type_name("WxH");
+    to.add_option("--seed", words.seed, "Of what is random (1)")->type_name("N");
+    to.add_option("--stats", words.stats, "Write counts, seconds by stage and the device as JSON")
+        ->type_name("FILE.json");
+    add_quiet(to, words);
+}
+
+result<common_options> check(const common_words& words) {
+    static constexpr named<backend_kind> backends[] = {{"cpu", backend_kind::cpu},
+                                                       {"opengl", backend_kind::opengl},
+                                                       {"vulkan", backend_kind::vulkan}};
+    common_options options;
+    const auto backend = one_of("--backend", words.backend, backends);
+    if (!backend) {
+        return failure(backend.error());
+    }
+    options.backend = *backend;
+    if (!words.device.empty()) {
+        const auto device = whole_number("--device", words.device, 0);
+        if (!device) {
+            return failure(device.error());
+        }
+        options.device = *device;
+        options.any_device = false;
+    }
+    const auto size = parse_size(words.size);
+    if (!size) {
+        return failure(size.error());
+    }
+    options.width = size->first;
+    options.height = size->second;
+    const auto seed = whole_number("--seed", words.seed, 0);
+    if (!seed) {
+        return failure(seed.error());
+    }
+    options.seed = *seed;
+    options.stats = words.stats;
+    options.quiet = words.quiet;
+    return options;
+}
+
+result<std::uint32_t> whole_number(std::string_view option, std::string_view text,
+                                   std::uint32_t low, std::uint32_t high) {
+    const auto number = io::parse_integer(text);
+    if (!number || *number < low || *number > high) {
+        return fail(error_code::bad_input, std::string(option) + " is " + io::in_quotes(text) +
+                                               "; expected a whole number from " +
+                                               std::to_string(low) + " to " + std::to_string(high) +
+                                               ".");
+    }
+    return static_cast<std::uint32_t>(*number);
+}
+
+failure not_among(std::string_view option, std::string_view text,
+                  std::span<const std::string_view> names) {
+    std::string known;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        known += i == 0 ? "" : i + 1 == names.size() ? " or " : ", ";
+        known += names[i];
+    }
+    return fail(error_code::bad_input,
+                std::string(option) + " is " + io::in_quotes(text) + "; expected " + known + ".");
+}
+
+std::string extension_of(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    return extension;
+}
+
+void complain(std::string_view sentence) {
+    std::fprintf(stderr, "skybark: %.*s\n", static_cast<int>(sentence.size()), sentence.data());
+}
+
+int usage_error(std::string_view command, std::string_view sentence) {
+    complain(sentence);
+    const std::string name = command.empty() ? "skybark" : "skybark " + std::string(command);
+    std::fprintf(stderr, "'%s --help' tells more.\n", name.c_str());
+    return exit_usage;
+}
+
+int report_failure(const error& e) {
+    complain(e.message);
+    return e.code == error_code::unavailable ? exit_unavailable : exit_failed;
+}
+
+} // namespace skybark::tool

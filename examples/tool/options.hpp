@@ -1,0 +1,90 @@
+#pragma once
+// What all commands share: options as words from the command line, and what they mean.
+
+#include <skybark/core/result.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace CLI {
+class App;
+}
+
+namespace skybark::tool {
+
+/// What the process returns.
+enum exit_code : int {
+    exit_done = 0,
+    exit_failed = 1,
+    exit_usage = 2,
+    exit_unavailable = 3, ///< the backend
+};
+
+/// The common options as they were typed. Numbers stay text until `check`, so that what is wrong
+/// with one is said in our words.
+struct common_words {
+    std::string backend = "cpu";
+    std::string device;
+    std::string size = "1280x800";
+    std::string seed = "1";
+    std::string stats;
+    bool quiet = false;
+};
+
+enum class backend_kind { cpu, opengl, vulkan };
+
+struct common_options {
+    backend_kind backend = backend_kind::cpu;
+    std::uint32_t device = 0; ///< as `skybark devices` counts them
+    bool any_device = true;   ///< none was asked for
+    std::uint32_t width = 1280;
+    std::uint32_t height = 800;
+    std::uint32_t seed = 1;
+    std::string stats; ///< empty: none
+    bool quiet = false;
+};
+
+/// Adds --backend and --device; the others with them, or one by one.
+void add_backend_options(CLI::App& to, common_words& words);
+void add_quiet(CLI::App& to, common_words& words);
+void add_common_options(CLI::App& to, common_words& words);
+[[nodiscard]] result<common_options> check(const common_words& words);
+
+/// A whole number in [low, high], or a sentence that names `option` and what it got.
+[[nodiscard]] result<std::uint32_t>
+whole_number(std::string_view option, std::string_view text, std::uint32_t low,
+             std::uint32_t high = std::numeric_limits<std::uint32_t>::max());
+
+/// What one of the `names` stands for.
+template <class T>
+using named = std::pair<std::string_view, T>;
+[[nodiscard]] failure not_among(std::string_view option, std::string_view text,
+                                std::span<const std::string_view> names);
+template <class T, std::size_t N>
+[[nodiscard]] result<T> one_of(std::string_view option, std::string_view text,
+                               const named<T> (&names)[N]) {
+    std::string_view known[N];
+    for (std::size_t i = 0; i < N; ++i) {
+        if (names[i].first == text) {
+            return names[i].second;
+        }
+        known[i] = names[i].first;
+    }
+    return not_among(option, text, known);
+}
+
+/// The extension in lower case, with its dot.
+[[nodiscard]] std::string extension_of(const std::string& path);
+
+/// Says it on stderr.
+void complain(std::string_view sentence);
+/// Says what is wrong with a command line, and returns `exit_usage`.
+[[nodiscard]] int usage_error(std::string_view command, std::string_view sentence);
+/// Says what went wrong, and returns what that is for the shell.
+[[nodiscard]] int report_failure(const error& e);
+
+} // namespace skybark::tool
