@@ -28,9 +28,8 @@ using token = std::uint32_t;  ///< GLenum
 using boolean = unsigned char;
 
 // clang-format off
-inline constexpr token none = 0, zero = 0, one = 1, no_error = 0, points = 0, triangles = 4;
-inline constexpr token invalid_enum = 0x0500, invalid_value = 0x0501, invalid_operation = 0x0502,
-    stack_overflow = 0x0503, stack_underflow = 0x0504, out_of_memory = 0x0505,
+inline constexpr token none = 0, one = 1, no_error = 0, points = 0, triangles = 4;
+inline constexpr token invalid_enum = 0x0500, invalid_value = 0x0501, invalid_operation = 0x0502, out_of_memory = 0x0505,
     invalid_framebuffer_operation = 0x0506, context_lost = 0x0507;
 inline constexpr token renderer = 0x1F01, version = 0x1F02, major_version = 0x821B,
     minor_version = 0x821C, context_profile_mask = 0x9126, context_core_profile_bit = 1;
@@ -38,8 +37,8 @@ inline constexpr token max_texture_size = 0x0D33, max_shader_storage_block_size 
     max_shader_storage_buffer_bindings = 0x90DD, max_vertex_shader_storage_blocks = 0x90D6,
     max_geometry_shader_storage_blocks = 0x90D7, max_fragment_shader_storage_blocks = 0x90DA,
     max_compute_shader_storage_blocks = 0x90DB, shader_storage_buffer_offset_alignment = 0x90DF,
-    uniform_buffer_offset_alignment = 0x8A34, max_clip_distances = 0x0D32;
-inline constexpr token array_buffer = 0x8892, element_array_buffer = 0x8893, dynamic_storage_bit = 0x0100,
+    uniform_buffer_offset_alignment = 0x8A34;
+inline constexpr token dynamic_storage_bit = 0x0100,
     shader_storage_buffer = 0x90D2, shader_storage_buffer_binding = 0x90D3,
     shader_storage_buffer_start = 0x90D4, shader_storage_buffer_size = 0x90D5,
     uniform_buffer = 0x8A11, uniform_buffer_binding = 0x8A28, uniform_buffer_start = 0x8A29,
@@ -54,13 +53,13 @@ inline constexpr token transform_feedback = 0x8E22, transform_feedback_binding =
     transform_feedback_paused = 0x8E23, transform_feedback_active = 0x8E24,
     transform_feedback_primitives_written = 0x8C88, primitives_generated = 0x8C87,
     rasterizer_discard = 0x8C89, query_result = 0x8866, current_query = 0x8865;
-inline constexpr token vertex_array_binding = 0x85B5, framebuffer = 0x8D40, draw_framebuffer = 0x8CA9,
-    draw_framebuffer_binding = 0x8CA6, framebuffer_complete = 0x8CD5, color_attachment0 = 0x8CE0,
+inline constexpr token vertex_array_binding = 0x85B5, draw_framebuffer = 0x8CA9,
+    draw_framebuffer_binding = 0x8CA6, color_attachment0 = 0x8CE0,
     depth_attachment = 0x8D00, framebuffer_default_width = 0x9310,
     framebuffer_default_height = 0x9311, color = 0x1800, depth = 0x1801;
 inline constexpr token texture_2d = 0x0DE1, texture_binding_2d = 0x8069, texture0 = 0x84C0,
     active_texture = 0x84E0, sampler_binding = 0x8919, rgba = 0x1908, rgba8 = 0x8058, rgba32f = 0x8814,
-    depth_component = 0x1902, depth_component32f = 0x8CAC, red = 0x1903, r32ui = 0x8236,
+    depth_component = 0x1902, depth_component32f = 0x8CAC, r32ui = 0x8236,
     red_integer = 0x8D94, unsigned_byte = 0x1401, unsigned_int = 0x1405, float32 = 0x1406,
     texture_mag_filter = 0x2800, texture_min_filter = 0x2801, texture_wrap_s = 0x2802,
     texture_wrap_t = 0x2803, nearest = 0x2600, linear = 0x2601, repeat = 0x2901,
@@ -75,8 +74,7 @@ inline constexpr token viewport = 0x0BA2, depth_range = 0x0B70, scissor_test = 0
     polygon_mode = 0x0B40, front_and_back = 0x0408, fill = 0x1B02, polygon_offset_fill = 0x8037,
     depth_clamp = 0x864F, clip_distance0 = 0x3000, clip_origin = 0x935C, clip_depth_mode = 0x935D,
     upper_left = 0x8CA2, zero_to_one = 0x935F, provoking_vertex = 0x8E4F,
-    last_vertex_convention = 0x8E4E, dither = 0x0BD0, framebuffer_srgb = 0x8DB9,
-    multisample = 0x809D, sample_alpha_to_coverage = 0x809E, sample_alpha_to_one = 0x809F,
+    last_vertex_convention = 0x8E4E, dither = 0x0BD0, framebuffer_srgb = 0x8DB9, sample_alpha_to_coverage = 0x809E, sample_alpha_to_one = 0x809F,
     sample_coverage = 0x80A0, sample_mask = 0x8E51, sample_shading = 0x8C36,
     primitive_restart = 0x8F9D, primitive_restart_fixed_index = 0x8D69;
 inline constexpr token unpack_swap_bytes = 0x0CF0, unpack_lsb_first = 0x0CF1,
@@ -88,8 +86,7 @@ inline constexpr token unpack_swap_bytes = 0x0CF0, unpack_lsb_first = 0x0CF1,
 inline constexpr token all_barrier_bits = 0xFFFFFFFF;
 inline constexpr token debug_output = 0x92E0, debug_output_synchronous = 0x8242,
     debug_callback_user_param = 0x8245, debug_severity_high = 0x9146, debug_severity_medium = 0x9147,
-    debug_severity_low = 0x9148, debug_severity_notification = 0x826B, debug_source_other = 0x824B,
-    debug_source_third_party = 0x824A;
+    debug_severity_low = 0x9148;
 // clang-format on
 
 using debug_procedure = void(SKYBARK_OPENGL_CALL*)(token source, token type, handle id,
@@ -121,8 +118,6 @@ using debug_procedure = void(SKYBARK_OPENGL_CALL*)(token source, token type, han
     X(void, finish, "glFinish", ()) \
     X(void, memory_barrier, "glMemoryBarrier", (token)) \
     X(void, debug_message_callback, "glDebugMessageCallback", (debug_procedure, const void*)) \
-    X(void, push_debug_group, "glPushDebugGroup", (token, handle, int, const char*)) \
-    X(void, pop_debug_group, "glPopDebugGroup", ()) \
     X(void, create_buffers, "glCreateBuffers", (int, handle*)) \
     X(void, delete_buffers, "glDeleteBuffers", (int, const handle*)) \
     X(void, named_buffer_storage, "glNamedBufferStorage", (handle, std::ptrdiff_t, const void*, token)) \
@@ -143,7 +138,6 @@ using debug_procedure = void(SKYBARK_OPENGL_CALL*)(token source, token type, han
     X(handle, create_program, "glCreateProgram", ()) \
     X(void, delete_program, "glDeleteProgram", (handle)) \
     X(void, attach_shader, "glAttachShader", (handle, handle)) \
-    X(void, detach_shader, "glDetachShader", (handle, handle)) \
     X(void, link_program, "glLinkProgram", (handle)) \
     X(void, get_program, "glGetProgramiv", (handle, token, int*)) \
     X(void, get_program_info_log, "glGetProgramInfoLog", (handle, int, int*, char*)) \
