@@ -220,8 +220,9 @@ class cursor {
 
 class skeleton_parser {
   public:
-    skeleton_parser(std::string_view text, std::string_view name, std::uint32_t seed)
-        : in_(without_mark(text), name), name_(name), seed_(seed) {}
+    skeleton_parser(std::string_view text, std::string_view name, std::uint32_t seed,
+                    std::size_t most_grown)
+        : in_(without_mark(text), name), name_(name), seed_(seed), most_grown_(most_grown) {}
 
     result<std::vector<trees::segment>> parse() {
         if (in_.at_end())
@@ -535,7 +536,7 @@ class skeleton_parser {
         weber_penn_parameters p = trees::find_species(species_)->parameters;
         for (const setting& s : settings_)
             apply(s, p);
-        auto grown = trees::grow(p, seed_);
+        auto grown = trees::grow(p, seed_, most_grown_);
         if (grown)
             return grown;
         for (const setting& s : settings_) // the parameter is named first in the sentence
@@ -547,6 +548,7 @@ class skeleton_parser {
     cursor in_;
     std::string_view name_;
     std::uint32_t seed_;
+    std::size_t most_grown_;
     std::string key_; ///< of a segment's member; kept, so that no segment allocates
     std::set<std::string> seen_;
     bool versioned_ = false;
@@ -560,8 +562,10 @@ class skeleton_parser {
 } // namespace
 
 result<std::vector<trees::segment>> parse_skeleton_json(std::string_view text,
-                                                        std::string_view name, std::uint32_t seed) {
-    return within_memory(name, [&] { return skeleton_parser(text, name, seed).parse(); });
+                                                        std::string_view name, std::uint32_t seed,
+                                                        std::size_t most_grown) {
+    return within_memory(name,
+                         [&] { return skeleton_parser(text, name, seed, most_grown).parse(); });
 }
 
 result<std::vector<trees::segment>> read_skeleton_json(const std::string& path,

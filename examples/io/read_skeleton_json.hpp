@@ -17,7 +17,7 @@
 // weber_penn_level, each set on top of the species' own. A "comment" with a string may stand in
 // the outermost object. Any other member is an error, since it is most likely a slip of the pen.
 
-#include <skybark/trees/skeleton.hpp>
+#include <skybark/trees/weber_penn.hpp>
 
 #include <cstdint>
 #include <string>
@@ -32,8 +32,10 @@ namespace skybark::io {
 [[nodiscard]] result<std::vector<trees::segment>> read_skeleton_json(const std::string& path,
                                                                      std::uint32_t seed = 1);
 
-/// The same for a text in memory; `name` stands for the file in sentences.
+/// The same for a text in memory; `name` stands for the file in sentences. A species may grow
+/// `most_grown` segments at most.
 [[nodiscard]] result<std::vector<trees::segment>>
-parse_skeleton_json(std::string_view text, std::string_view name, std::uint32_t seed = 1);
+parse_skeleton_json(std::string_view text, std::string_view name, std::uint32_t seed = 1,
+                    std::size_t most_grown = trees::default_most_segments);
 
 } // namespace skybark::io

@@ -9,7 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace skybark;
     const auto segments = io::parse_skeleton_json(
-        std::string_view(reinterpret_cast<const char*>(data), size), "fuzz");
+        std::string_view(reinterpret_cast<const char*>(data), size), "fuzz", 1, 20'000);
     if (!segments && segments.error().message.empty())
         std::abort();
     if (segments && !trees::build_skeleton(*segments))

@@ -362,6 +362,24 @@ TEST(weber_penn, names_a_bad_parameter) {
     EXPECT_TRUE(has(with([](auto& p) { p.level[0].curve_res = 0; }), "curve_res of level 0 is 0"));
 }
 
+TEST(weber_penn, refuses_no_trunk_and_an_endless_one) {
+    weber_penn_parameters p = pole();
+    p.level[0].length = 0;
+    EXPECT_TRUE(has(complaint(p), "leave the trunk no length (0 ± 0 of the scale)"));
+    p.level[0].length = 1000;
+    p.scale = 1e6f;
+    EXPECT_TRUE(has(complaint(p), "more than 1e9 metres"));
+}
+
+TEST(weber_penn, no_power_makes_a_radius_nan) {
+    weber_penn_parameters p = comb(0, 20);
+    p.ratio = 0;
+    p.ratio_power = -100;
+    p.level[1].length = 0.001f;
+    for (const segment& s : grown(p))
+        EXPECT_EQ(s.base_radius, 0.0f);
+}
+
 TEST(weber_penn, refuses_more_than_fifty_million_segments) {
     weber_penn_parameters p = comb(3, 100'000);
     p.levels = 3;

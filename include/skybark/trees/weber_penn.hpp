@@ -82,11 +82,13 @@ struct weber_penn_parameters {
     std::array<weber_penn_level, 4> level{};
 };
 
+/// What `grow` makes at most unless it is told otherwise.
+inline constexpr std::size_t default_most_segments = 50'000'000;
+
 namespace detail::weber_penn {
 
 inline constexpr double pi = 3.14159265358979323846;
 inline constexpr double degrees = pi / 180;
-inline constexpr std::size_t most_segments = 50'000'000;
 inline constexpr int most_levels = 9;
 
 /// PCG32 (O'Neill 2014, XSH-RR): the standard's engines are portable, its distributions are not.
@@ -271,7 +273,7 @@ template <class T>
 
 /// An estimate from above of how many segments the parameters make: every stem with all its
 /// children and an average of clones.
-[[nodiscard]] inline double segment_estimate(const weber_penn_parameters& p) {
+[[nodiscard]] inline double segment_estimate(const weber_penn_parameters& p, double most) {
     double stems = 1;
     double segments = 0;
     for (int n = 0; n < p.levels; ++n) {
@@ -279,10 +281,9 @@ template <class T>
         if (n > 0)
             stems *= l.branches;
         const double growth = 1 + static_cast<double>(l.seg_splits);
-        const double most = static_cast<double>(most_segments) * 2;
         double clones = n == 0 ? 1 + p.base_splits : 1;
         double one_stem = 1;
-        for (int i = 1; i < l.curve_res && one_stem < most; ++i) {
+        for (int i = 1; i < l.curve_res && one_stem <= most; ++i) {
             one_stem += clones;
             clones *= growth;
         }
@@ -328,8 +329,8 @@ struct piece {
 
 class grower {
   public:
-    grower(const weber_penn_parameters& parameters, std::uint32_t seed)
-        : p_(parameters), random_(seed) {
+    grower(const weber_penn_parameters& parameters, std::uint32_t seed, std::size_t most)
+        : p_(parameters), most_(most), random_(seed) {
         // a published table has scale 10 ± 10: keep the tree from vanishing
         scale_ = std::max(p_.scale + random_.vary(p_.scale_v), 0.1 * p_.scale);
         z_scale_ = std::max(p_.z_scale + random_.vary(p_.z_scale_v), 0.1 * p_.z_scale);
@@ -342,11 +343,19 @@ class grower {
             const stem s = pending_.back();
             pending_.pop_back();
             grow_stem(s);
-            if (segments_.size() > most_segments)
+            if (segments_.size() > most_)
                 return fail(error_code::bad_input,
-                            "These tree parameters make more than 50000000 segments; expected "
-                            "fewer branches, segments or splits.");
+                            "These tree parameters make more than " + std::to_string(most_) +
+                                " segments; expected fewer branches, segments or splits.");
         }
+        if (segments_.empty())
+            return fail(error_code::bad_input, "These tree parameters leave the trunk no length (" +
+                                                   value_text(p_.level[0].length) + " ± " +
+                                                   value_text(p_.level[0].length_v) +
+                                                   " of the scale); expected a trunk.");
+        if (too_far_)
+            return fail(error_code::bad_input, "These tree parameters make a tree of more than "
+                                               "1e9 metres; expected smaller lengths.");
         return std::move(segments_);
     }
 
@@ -429,7 +438,7 @@ class grower {
             emit(s, r, grown);
             const double part = s.length / l.curve_res;
             bear(s, r, grown, grown.segment * part, part, children, child_random);
-            return segments_.size() <= most_segments;
+            return segments_.size() <= most_;
         });
     }
 
@@ -501,7 +510,7 @@ class grower {
         } else if (clones == 0) {
             return;
         }
-        if (clones <= 0 || runs.size() > most_segments)
+        if (clones <= 0 || runs.size() > most_)
             return;
         const int remaining = l.curve_res - r.segment;
         const run original = r;
@@ -590,7 +599,9 @@ class grower {
         else
             c.length = c.length_max * (s.length - 0.6 * offset);
         const double thinner = std::pow(c.length / s.length, static_cast<double>(p_.ratio_power));
-        c.radius = std::min(s.radius * thinner, radius_at(s, offset / s.length));
+        c.radius = radius_at(s, offset / s.length);
+        if (s.radius * thinner < c.radius) // false for 0 · ∞
+            c.radius = s.radius * thinner;
 
         double turn = random.vary(l.rotate_v);
         if (l.rotate < 0) { // by turns on either side
@@ -636,6 +647,8 @@ class grower {
             piece_of_wood.radius = static_cast<float>(radius_at(s, z_to));
             piece_of_wood.parent = r.parent;
             r.parent = static_cast<std::uint32_t>(segments_.size());
+            constexpr double far = 1e9;
+            too_far_ = too_far_ || !(glm::length(to) < far) || !(std::abs(to.z * z_scale_) < far);
             segments_.push_back(piece_of_wood);
             piece_ends_.push_back(z_to);
             from = to;
@@ -654,11 +667,13 @@ class grower {
     }
 
     weber_penn_parameters p_;
+    std::size_t most_;
     pcg32 random_;
     double scale_ = 0; ///< m, the paper's scale_tree
     double z_scale_ = 1;
     /// What splitting owes at each level: a fraction a segment adds up to whole clones.
     std::array<double, most_levels> split_error_{};
+    bool too_far_ = false;           ///< floats would lose the tree, or overflow
     std::vector<double> piece_ends_; ///< z at the tip of each segment of the piece just emitted
     std::vector<stem> pending_;
     std::vector<segment> segments_;
@@ -673,18 +688,20 @@ class grower {
 /// A stem starts on its parent's axis, inside its parent. Leaves are not placed here.
 ///
 /// Errors (`bad_input`, naming the parameter and its value): NaN, a negative count, a value out of
-/// range, or numbers that would make more than 50 million segments.
+/// range, no trunk, or numbers that would make more than `most` segments or 1e9 m.
 [[nodiscard]] inline result<std::vector<segment>> grow(const weber_penn_parameters& parameters,
-                                                       std::uint32_t seed) {
+                                                       std::uint32_t seed,
+                                                       std::size_t most = default_most_segments) {
     if (std::string complaint = detail::weber_penn::complaint_of(parameters); !complaint.empty())
         return fail(error_code::bad_input, std::move(complaint));
-    const double estimate = detail::weber_penn::segment_estimate(parameters);
-    if (estimate > static_cast<double>(detail::weber_penn::most_segments))
+    const auto limit = static_cast<double>(most);
+    const double estimate = detail::weber_penn::segment_estimate(parameters, limit);
+    if (estimate > limit)
         return fail(error_code::bad_input,
                     "These tree parameters could make about " +
                         detail::weber_penn::value_text(std::floor(estimate)) +
-                        " segments; expected at most 50000000.");
-    return detail::weber_penn::grower(parameters, seed).grow();
+                        " segments; expected at most " + std::to_string(most) + ".");
+    return detail::weber_penn::grower(parameters, seed, most).grow();
 }
 
 } // namespace skybark::trees
