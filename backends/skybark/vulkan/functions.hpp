@@ -218,8 +218,8 @@ void load_command_functions(functions& f, Load& load) {
                     "This Vulkan device has no " + load.missing + "; Skybark needs Vulkan 1.3.");
     }
     if (debug_utils) { // an instance extension: its device functions come from the instance
-        detail::loader optional{[&](const char* name) { return get_instance_proc(instance, name); },
-                                {}};
+        detail::loader optional(
+            [&](const char* name) { return get_instance_proc(instance, name); });
         optional(f.set_object_name, "vkSetDebugUtilsObjectNameEXT");
     }
     return f;

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d8293ff913f02f2b7640c9407138a10ff1d565714ea0ca4c3f8bc7d24c855097
+// sha256 0bc65f76ed3762759ab3c328910efe920303089a02b3e297f75fffbe6fb64a19
 #pragma once
 
 #include <skybark/kernels/branch_cap.hpp>
