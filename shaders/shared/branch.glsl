@@ -57,10 +57,10 @@ branch_ring branch_ring_slerp(branch_end a, branch_end b, branch_curve c, float 
     return r;
 }
 
-// The unit direction of the centreline at ring k of `last`.
-vec3 branch_direction(branch_curve c, uint k, uint last) {
+// The unit direction of the centreline at ring k of `last`, or the start's own where it has none.
+vec3 branch_direction(branch_end a, branch_curve c, uint k, uint last) {
     float t = float(k) / float(last);
-    return unit_or(hermite_derivative(c.p1, c.n1, c.p2, c.n2, t), c.n1);
+    return unit_or(hermite_derivative(c.p1, c.n1, c.p2, c.n2, t), quaternion_y(a.orientation));
 }
 
 // Ring k of 0 ... last with a rotation-minimising frame: the start's x axis is carried along by
@@ -75,11 +75,11 @@ branch_ring branch_ring_rotation_minimising(branch_end a, branch_end b, branch_c
     vec3 x = quaternion_x(a.orientation);
     vec3 x_here = x;
     vec3 p = c.p1;
-    vec3 d = branch_direction(c, 0u, last);
+    vec3 d = branch_direction(a, c, 0u, last);
     vec3 d_here = d;
     for (uint i = 1u; i <= last; ++i) {
         vec3 p_next = hermite_point(c.p1, c.n1, c.p2, c.n2, float(i) / float(last));
-        vec3 d_next = branch_direction(c, i, last);
+        vec3 d_next = branch_direction(a, c, i, last);
         x = double_reflection(p, d, x, p_next, d_next);
         p = p_next;
         d = d_next;

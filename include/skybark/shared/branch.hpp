@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 76b5562d189211d3cf7cdfd5b8acda5083516b56dd881b2c4239db6d203e6992
+// sha256 724090deb8253e0f93cef440c8648bab77f78c54d8e21eb8e5bd001ed846f64a
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -65,10 +65,10 @@ inline branch_ring branch_ring_slerp(branch_end a, branch_end b, branch_curve c,
     return r;
 }
 
-// The unit direction of the centreline at ring k of `last`.
-inline vec3 branch_direction(branch_curve c, uint k, uint last) {
+// The unit direction of the centreline at ring k of `last`, or the start's own where it has none.
+inline vec3 branch_direction(branch_end a, branch_curve c, uint k, uint last) {
     float t = float(k) / float(last);
-    return unit_or(hermite_derivative(c.p1, c.n1, c.p2, c.n2, t), c.n1);
+    return unit_or(hermite_derivative(c.p1, c.n1, c.p2, c.n2, t), quaternion_y(a.orientation));
 }
 
 // Ring k of 0 ... last with a rotation-minimising frame: the start's x axis is carried along by
@@ -83,11 +83,11 @@ inline branch_ring branch_ring_rotation_minimising(branch_end a, branch_end b, b
     vec3 x = quaternion_x(a.orientation);
     vec3 x_here = x;
     vec3 p = c.p1;
-    vec3 d = branch_direction(c, 0u, last);
+    vec3 d = branch_direction(a, c, 0u, last);
     vec3 d_here = d;
     for (uint i = 1u; i <= last; ++i) {
         vec3 p_next = hermite_point(c.p1, c.n1, c.p2, c.n2, float(i) / float(last));
-        vec3 d_next = branch_direction(c, i, last);
+        vec3 d_next = branch_direction(a, c, i, last);
         x = double_reflection(p, d, x, p_next, d_next);
         p = p_next;
         d = d_next;

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 81aa1a36c31631ff388202f2aeee66a9a380f1a048b46cb5fd1fcbddb9eafc66
+// sha256 5d1686705ca8599ae092f65fd6123c51da8ddedfa593742a2cbb48e34a1916ab
 #pragma once
 
 #include <skybark/kernels/branch_cap.hpp>
@@ -201,9 +201,9 @@ branch_ring branch_ring_slerp(branch_end a, branch_end b, branch_curve c, float 
     r.reserved = 0.0f;
     return r;
 }
-vec3 branch_direction(branch_curve c, uint k, uint last) {
+vec3 branch_direction(branch_end a, branch_curve c, uint k, uint last) {
     float t = float(k) / float(last);
-    return unit_or(hermite_derivative(c.p1, c.n1, c.p2, c.n2, t), c.n1);
+    return unit_or(hermite_derivative(c.p1, c.n1, c.p2, c.n2, t), quaternion_y(a.orientation));
 }
 branch_ring branch_ring_rotation_minimising(branch_end a, branch_end b, branch_curve c, uint k,
                                             uint last) {
@@ -214,11 +214,11 @@ branch_ring branch_ring_rotation_minimising(branch_end a, branch_end b, branch_c
     vec3 x = quaternion_x(a.orientation);
     vec3 x_here = x;
     vec3 p = c.p1;
-    vec3 d = branch_direction(c, 0u, last);
+    vec3 d = branch_direction(a, c, 0u, last);
     vec3 d_here = d;
     for (uint i = 1u; i <= last; ++i) {
         vec3 p_next = hermite_point(c.p1, c.n1, c.p2, c.n2, float(i) / float(last));
-        vec3 d_next = branch_direction(c, i, last);
+        vec3 d_next = branch_direction(a, c, i, last);
         x = double_reflection(p, d, x, p_next, d_next);
         p = p_next;
         d = d_next;
