@@ -339,7 +339,6 @@ TEST_P(patterns, expand_goes_past_65535_groups) {
 TEST_P(patterns, required_stops_at_the_largest_number) {
     // 2^17 elements of 2^16 triangles are 2^33.
     const std::uint32_t n = 1u << 17;
-    const strips_case small(1, 1, 1);
     probe_strips k{1, 1u << 16};
     const auto counts = upload(gpu(), std::vector<std::uint32_t>(n, 1u << 16));
     const auto payloads = upload(gpu(), std::vector<glm::vec4>(n));
@@ -347,6 +346,9 @@ TEST_P(patterns, required_stops_at_the_largest_number) {
     const auto record = must(gpu().create_buffer(16));
     const bound<probe_strips> b{view<device>(counts), view<device>(payloads)};
     for (const padding policy : {padding::degenerate, padding::compact}) {
+        if (policy == padding::compact && GetParam()) {
+            continue; // 2^32 invocations that find nothing to do: minutes on a software device
+        }
         go(gpu(), [&](auto& rec) {
             rec.expand(k, b, range{0, n}, {view<device>(out), view<device>(record), policy});
         });
