@@ -395,6 +395,46 @@ TEST_F(device_test, rings_come_in_order_and_stop_at_the_end) {
     }
 }
 
+// More points than one draw takes, which nobody has the memory to test, by smaller draws.
+TEST_F(expand_test, several_draws_are_as_one) {
+    const strips_scene scene(100, 3, 60);
+    const buffer counts = make(scene.counts);
+    const buffer payloads = make(scene.payloads);
+    const buffer length = make(std::vector<count_record>{{77, 0, {0, 0}}});
+    auto made = detail::context::create(
+        {[](const char* name, void* user) { return static_cast<headless*>(user)->find(name); },
+         owner.get(), nullptr, nullptr});
+    ASSERT_TRUE(made);
+    detail::context& context = **made;
+    const auto expected = scene.list({0, 77}, padding::compact);
+    const std::uint64_t bytes = expected.size() * sizeof(probe_strip_vertex);
+    const auto whole = [](const buffer& b) {
+        return detail::bound_range{b.name(), 0, static_cast<std::ptrdiff_t>(b.size_bytes())};
+    };
+    const detail::bound_range buffers[] = {whole(counts), whole(payloads)};
+    for (const bool counted : {false, true}) {
+        const buffer out = zeros(bytes);
+        const buffer count = zeros(16);
+        detail::expansion expansion;
+        expansion.vertex_text = program<probe_strips>::expand_vert;
+        expansion.geometry_text = program<probe_strips>::strips_geom;
+        expansion.primitive = gl::triangles;
+        expansion.parts = detail::strip_parts(3, 60, sizeof(probe_strip_vertex), padding::compact);
+        expansion.vertices = whole(out);
+        expansion.count = whole(count);
+        expansion.points_a_draw = 23;
+        const auto done = detail::expand(
+            context, {detail::bytes_of(scene.kernel), buffers},
+            {0, counted ? 100u : 77u, counted ? whole(length) : detail::bound_range{}}, expansion);
+        ASSERT_TRUE(done) << done.error().message;
+        const auto checked = context.check("testing");
+        ASSERT_TRUE(checked) << checked.error().message;
+        const auto got = read<probe_strip_vertex>(out, expected.size());
+        EXPECT_EQ(std::memcmp(got.data(), expected.data(), bytes), 0);
+        EXPECT_EQ(read<count_record>(count, 1)[0].written, expected.size() / 3);
+    }
+}
+
 // ---- How elements are cut -----------------------------------------------------------------------
 
 TEST(element_parts, never_exceed_what_a_geometry_shader_may_emit) {

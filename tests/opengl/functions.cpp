@@ -135,6 +135,7 @@ static_assert(gl::polygon_mode == GL_POLYGON_MODE);
 static_assert(gl::front_and_back == GL_FRONT_AND_BACK);
 static_assert(gl::fill == GL_FILL);
 static_assert(gl::polygon_offset_fill == GL_POLYGON_OFFSET_FILL);
+static_assert(gl::polygon_smooth == GL_POLYGON_SMOOTH);
 static_assert(gl::depth_clamp == GL_DEPTH_CLAMP);
 static_assert(gl::clip_distance0 == GL_CLIP_DISTANCE0);
 static_assert(gl::clip_origin == GL_CLIP_ORIGIN);

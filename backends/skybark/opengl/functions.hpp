@@ -71,7 +71,7 @@ inline constexpr token viewport = 0x0BA2, depth_range = 0x0B70, scissor_test = 0
     blend_equation_rgb = 0x8009, blend_equation_alpha = 0x883D, func_add = 0x8006,
     one_minus_src_alpha = 0x0303, color_writemask = 0x0C23, color_logic_op = 0x0BF2,
     cull_face = 0x0B44, cull_face_mode = 0x0B45, back = 0x0405, front_face = 0x0B46, ccw = 0x0901,
-    polygon_mode = 0x0B40, front_and_back = 0x0408, fill = 0x1B02, polygon_offset_fill = 0x8037,
+    polygon_mode = 0x0B40, front_and_back = 0x0408, fill = 0x1B02, polygon_offset_fill = 0x8037, polygon_smooth = 0x0B41,
     depth_clamp = 0x864F, clip_distance0 = 0x3000, clip_origin = 0x935C, clip_depth_mode = 0x935D,
     upper_left = 0x8CA2, zero_to_one = 0x935F, provoking_vertex = 0x8E4F,
     last_vertex_convention = 0x8E4E, dither = 0x0BD0, framebuffer_srgb = 0x8DB9, sample_alpha_to_coverage = 0x809E, sample_alpha_to_one = 0x809F,

@@ -369,6 +369,9 @@ class headless {
     /// Leaves this thread without a context, if this one is current.
     void release() { context_->release(); }
 
+    /// A function of the context's own library, for the caller's own OpenGL calls.
+    [[nodiscard]] procedure find(const char* name) const { return context_->find(name); }
+
     [[nodiscard]] opengl::device& device() & noexcept { return device_; }
     /// The device alone: it keeps the context.
     [[nodiscard]] opengl::device device() && noexcept { return std::move(device_); }

@@ -241,6 +241,9 @@ struct element_parts {
     return {even, std::uint64_t{strips} * ((triangles - 1) / even + 1), even + extra};
 }
 
+/// Points of one draw: far below 2³¹, where gl_VertexID ends.
+inline constexpr std::uint64_t max_points = std::uint64_t{1} << 30;
+
 /// Where an expansion writes, and how.
 struct expansion {
     std::string_view vertex_text;
@@ -249,11 +252,9 @@ struct expansion {
     element_parts parts;
     std::uint32_t flags = 0; ///< of the header
     bound_range vertices;
-    bound_range count; ///< a count_record, or nothing
+    bound_range count;                        ///< a count_record, or nothing
+    std::uint64_t points_a_draw = max_points; ///< more are drawn by several draws
 };
-
-/// Points of one draw: far below 2³¹, where gl_VertexID ends.
-inline constexpr std::uint64_t max_points = std::uint64_t{1} << 30;
 
 [[nodiscard]] inline result<void> require_free_queries(const gl::functions& gl) {
     for (const gl::token target :
@@ -275,7 +276,7 @@ inline constexpr std::uint64_t max_points = std::uint64_t{1} << 30;
                                               const element_range& elements, const expansion& out) {
     const std::uint64_t parts = out.parts.count;
     const auto chunk = static_cast<std::uint32_t>(
-        std::clamp<std::uint64_t>(max_points / parts, 1, elements.count));
+        std::clamp<std::uint64_t>(out.points_a_draw / parts, 1, elements.count));
     for (std::uint32_t done = 0; done < elements.count;) {
         const std::uint32_t now = std::min(chunk, elements.count - done);
         if (elements.length.buffer != 0) {
@@ -293,10 +294,12 @@ inline constexpr std::uint64_t max_points = std::uint64_t{1} << 30;
         }
         bind_parameters(c, {elements.first + done, now, out.parts.size, out.flags},
                         call.parameters);
-        c.gl.use_program(program);
+        // While a transform feedback runs, not even the program in use may be used again.
         if (done == 0) {
+            c.gl.use_program(program);
             c.gl.begin_transform_feedback(out.primitive);
         } else if (elements.length.buffer != 0) {
+            c.gl.use_program(program);
             c.gl.resume_transform_feedback();
         }
         if (elements.length.buffer != 0) {

@@ -186,10 +186,11 @@ class saved_feedback {
 };
 
 /// What would change a pixel, or keep it from being drawn, and is not ours to set otherwise.
-inline constexpr std::array<gl::token, 14> disturbing_capabilities = {
+inline constexpr std::array<gl::token, 15> disturbing_capabilities = {
     gl::stencil_test,
     gl::color_logic_op,
     gl::polygon_offset_fill,
+    gl::polygon_smooth,
     gl::depth_clamp,
     gl::dither,
     gl::framebuffer_srgb,
@@ -262,7 +263,7 @@ class saved_raster {
         gl::polygon_mode, gl::clip_origin,     gl::clip_depth_mode};
 
     const gl::functions& gl_;
-    saved_capabilities<14> disturbing_;
+    saved_capabilities<15> disturbing_;
     saved_capabilities<8> clipping_;
     std::array<float, 4> viewport_{};
     std::array<double, 2> depth_range_{};
