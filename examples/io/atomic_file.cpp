@@ -93,9 +93,10 @@ bool is_special(const std::string& target) {
 std::string temporary_name(const std::string& target, int attempt) {
     const std::string name = fs::path(target).filename().string();
     constexpr std::size_t longest = 200; // a file system takes 255 bytes a name
-    return (folder_of(target) / ("." + name.substr(0, longest) + "." + std::to_string(::getpid()) +
-                                 "." + std::to_string(attempt) + ".part"))
-        .string();
+    std::string hidden = ".";
+    hidden += name.substr(0, longest) + "." + std::to_string(::getpid()) + "." +
+              std::to_string(attempt) + ".part";
+    return (folder_of(target) / hidden).string();
 }
 
 } // namespace

@@ -136,7 +136,8 @@ class session {
         if (!c.reports.empty()) {
             out += ",\"reports\":[";
             for (std::size_t i = 0; i < c.reports.size(); ++i) {
-                out += (i == 0 ? "" : ",") + to_json(c.reports[i]);
+                out += i == 0 ? "" : ",";
+                out += to_json(c.reports[i]);
             }
             out += "]";
         }
