@@ -109,11 +109,14 @@ class device {
     [[nodiscard]] result<void> submit(cpu::recorder& recorder);
 
     /// Runs tasks 0 … count − 1 on the device's threads.
-    void parallel(std::uint32_t count, const std::function<void(std::uint32_t)>& task) {
+    template <class Task>
+    void parallel(std::uint32_t count, const Task& task) {
+        // By reference: a std::function of more than two words would allocate.
+        const std::function<void(std::uint32_t)> by_reference = std::cref(task);
         if (jobs_) {
-            jobs_(count, task);
+            jobs_(count, by_reference);
         } else {
-            (*pool_)(count, task);
+            (*pool_)(count, by_reference);
         }
     }
 

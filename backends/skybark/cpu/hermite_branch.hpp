@@ -263,16 +263,20 @@ struct program<kernels::hermite_branch> {
         const f4 x = ring.x[lane];
         const f4 z = ring.z[lane];
         const f4 lean = ring.lean[lane];
-        const f4 radius = splat(ring.radius[lane]);
-        const f4 length = splat(ring.lean_length[lane]);
+        // No fourth lane: a radius that is not a number must not reach u.
+        const float r = ring.radius[lane];
+        const float l = ring.lean_length[lane];
+        const f4 radius{r, r, r, 0};
+        const f4 length{l, l, l, 0};
         for (const glm::vec4& corner : corners) {
             const f4 cosine = splat(corner.x);
             const f4 sine = splat(corner.y);
             const f4 outward = x * cosine - z * sine;
             const f4 along = x * sine + z * cosine;
-            stream(out, centre + outward * radius + f4{0, 0, 0, corner.z});
+            // -0 changes nothing that it is added to, not even a zero's sign.
+            stream(out, centre + outward * radius + f4{-0.0f, -0.0f, -0.0f, corner.z});
             stream(out + 4, outward * length - lean);
-            stream(out + 8, f4{0, 0, 0, 1} - along);
+            stream(out + 8, f4{-0.0f, -0.0f, -0.0f, 1} - along);
             out += 12;
         }
     }
