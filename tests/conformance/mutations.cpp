@@ -1,11 +1,9 @@
 // The suite is tested itself: backends that are wrong in one way must each fail the case that is
 // about it, and the right one that they are made from must fail none.
 
-#include <skybark/conformance/suite.hpp>
+#include "run_cases.hpp"
 
 #include "../../examples/04_own_backend.hpp"
-
-#include <set>
 
 namespace {
 
@@ -323,36 +321,16 @@ result<void> mutant::submit(mutant_recorder& done) {
     return true;
 }
 
-/// The cases that a mutant fails, of the small ones.
-[[nodiscard]] std::set<std::string> failed_cases(fault which) {
-    std::set<std::string> failed;
-    for (const auto& c : conformance::all_cases<mutant>()) {
-        if (!is_small(c.name)) {
-            continue;
-        }
-        testing::TestPartResultArray parts;
-        {
-            const testing::ScopedFakeTestPartResultReporter catching(
-                testing::ScopedFakeTestPartResultReporter::INTERCEPT_ALL_THREADS, &parts);
-            try {
-                mutant device(which);
-                conformance::context<mutant> on(device, "mutant", c.pattern + "." + c.name, 1);
-                c.body(on);
-            } catch (const conformance::case_stopped&) {
-                EXPECT_GT(parts.size(), 0) << "A case stopped without saying why.";
-            }
-        }
-        if (parts.size() != 0) {
-            failed.insert(c.pattern + "." + c.name);
-        }
-    }
-    conformance::current_session().pending.clear();
-    return failed;
+/// The small cases that a mutant fails, and what they say.
+[[nodiscard]] std::map<std::string, std::string> failed_cases(fault which) {
+    std::optional<mutant> device;
+    return conformance::failed_cases<mutant>([&]() -> mutant& { return device.emplace(which); },
+                                             is_small);
 }
 
-[[nodiscard]] std::string listed(const std::set<std::string>& names) {
+[[nodiscard]] std::string listed(const std::map<std::string, std::string>& failed) {
     std::string all;
-    for (const std::string& name : names) {
+    for (const auto& [name, why] : failed) {
         all += "\n  " + name;
     }
     return all.empty() ? " none" : all;

@@ -75,9 +75,10 @@ struct suite_options {
     return false;
 }
 
+/// "vulkan/other_driver" counts as "vulkan".
 [[nodiscard]] inline bool is_required(std::string_view backend_name) {
     const char* list = std::getenv("SKYBARK_REQUIRE_BACKENDS");
-    return list != nullptr && lists_name(list, backend_name);
+    return list != nullptr && lists_name(list, backend_name.substr(0, backend_name.find('/')));
 }
 
 /// Every case that a backend's concepts allow.
