@@ -94,8 +94,10 @@ draw_tree(B& device, const trees::branch_mesh<B>& mesh, glm::vec3 low, glm::vec3
         }
         images.push_back(std::move(*made));
     }
-    const auto& [color, depth, shadow, developed] =
-        std::tie(images[0], images[1], images[2], images[3]);
+    const auto& color = images[0];
+    const auto& depth = images[1];
+    const auto& shadow = images[2];
+    const auto& developed = images[3];
 
     const buffer_view<B> scene_view = view<B>(*scene_buffer);
     const sampled_image<B> shadow_map{&shadow, filter_mode::nearest, wrap_mode::clamp};
