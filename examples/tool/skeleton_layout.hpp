@@ -7,7 +7,7 @@
 namespace skybark::tool {
 
 /// Every segment gets two ends of its own, turned along its chord, so that no curve bends it and
-/// no joint is shared. `radius` (m) is that of all sticks.
+/// no joint is shared. `radius` (m) is that of all sticks, but for twigs that are thinner.
 [[nodiscard]] inline trees::branch_layout skeleton_layout(const trees::skeleton& from,
                                                           float radius) {
     trees::branch_layout layout;
@@ -17,7 +17,7 @@ namespace skybark::tool {
         const glm::quat& turn = from.orientation[i];
         branch_end end;
         end.position = from.position[i];
-        end.radius = radius;
+        end.radius = std::min(radius, from.base_radius[i]);
         end.orientation = {turn.x, turn.y, turn.z, turn.w};
         layout.ends.push_back(end);
         end.position = from.tip(i);
