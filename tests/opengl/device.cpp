@@ -123,7 +123,8 @@ TEST_F(device_test, a_moved_buffer_is_deleted_once) {
     buffer b = std::move(a);
     EXPECT_EQ(a.size_bytes(), 0u); // NOLINT: what is left is an empty buffer
     b = zeros(32);
-    b = std::move(b); // NOLINT
+    buffer& same = b;
+    b = std::move(same);
     EXPECT_EQ(read<std::uint32_t>(b, 8), std::vector<std::uint32_t>(8, 0));
 }
 
@@ -358,13 +359,14 @@ TEST_F(lent_test, wrapped_objects_are_used_and_not_deleted) {
 
 // ---- Errors of a recorder -----------------------------------------------------------------------
 
+} // namespace
+
 /// A kernel whose program no driver compiles.
 struct broken {
     using buffers = buffer_list<>;
     void map(std::uint32_t) const {}
 };
 
-} // namespace
 } // namespace skybark::opengl::tests
 
 template <>

@@ -18,7 +18,7 @@ class caller_functions {
     explicit caller_functions(const caller_context& context) : context_(context) {}
     template <class Pointer, class... Arguments>
     auto call(const char* name, Arguments... arguments) const {
-        return reinterpret_cast<Pointer>(context_.find(name))(arguments...);
+        return call(reinterpret_cast<Pointer>(context_.find(name)), arguments...);
     }
     template <class Pointer>
     [[nodiscard]] Pointer get(const char* name) const {
@@ -26,9 +26,18 @@ class caller_functions {
     }
 
   private:
+    /// OpenGL's constants are ints and its enumerations unsigned: each argument as it is declared.
+    template <class Result, class... Parameters, class... Arguments>
+    static auto call(Result(APIENTRY* function)(Parameters...), Arguments... arguments) {
+        return function(static_cast<Parameters>(arguments)...);
+    }
+
     const caller_context& context_;
 };
 #define GL_CALL(type, name, ...) gl.call<type>(#name __VA_OPT__(, ) __VA_ARGS__)
+
+/// OpenGL's constants are ints.
+std::vector<GLenum> names(std::initializer_list<int> list) { return {list.begin(), list.end()}; }
 
 using snapshot = std::map<std::string, std::vector<double>>;
 
@@ -63,13 +72,15 @@ class snapshot_maker {
         for (GLenum unit = 0; unit < 10; ++unit) {
             ask_unit(unit);
         }
-        for (const GLenum target : {GL_PRIMITIVES_GENERATED, GL_SAMPLES_PASSED, GL_TIME_ELAPSED,
-                                    GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN}) {
+        for (const GLenum target :
+             names({GL_PRIMITIVES_GENERATED, GL_SAMPLES_PASSED, GL_TIME_ELAPSED,
+                    GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN})) {
             GLint query = 0;
             gl_.get<PFNGLGETQUERYIVPROC>("glGetQueryiv")(target, GL_CURRENT_QUERY, &query);
             state_["query " + hex(target)] = {static_cast<double>(query)};
         }
-        for (const GLenum name : {GL_DEBUG_CALLBACK_FUNCTION, GL_DEBUG_CALLBACK_USER_PARAM}) {
+        for (const GLenum name :
+             names({GL_DEBUG_CALLBACK_FUNCTION, GL_DEBUG_CALLBACK_USER_PARAM})) {
             void* pointer = nullptr;
             gl_.get<PFNGLGETPOINTERVPROC>("glGetPointerv")(name, &pointer);
             state_["pointer " + hex(name)] = {
@@ -123,10 +134,10 @@ class snapshot_maker {
         gl_.get<PFNGLGETINTEGERVPROC>("glGetIntegerv")(GL_ACTIVE_TEXTURE, &before);
         active(GL_TEXTURE0 + unit);
         for (const GLenum name :
-             {GL_TEXTURE_BINDING_1D, GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_3D,
-              GL_TEXTURE_BINDING_CUBE_MAP, GL_TEXTURE_BINDING_2D_ARRAY, GL_TEXTURE_BINDING_BUFFER,
-              GL_TEXTURE_BINDING_RECTANGLE, GL_TEXTURE_BINDING_2D_MULTISAMPLE,
-              GL_SAMPLER_BINDING}) {
+             names({GL_TEXTURE_BINDING_1D, GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_3D,
+                    GL_TEXTURE_BINDING_CUBE_MAP, GL_TEXTURE_BINDING_2D_ARRAY,
+                    GL_TEXTURE_BINDING_BUFFER, GL_TEXTURE_BINDING_RECTANGLE,
+                    GL_TEXTURE_BINDING_2D_MULTISAMPLE, GL_SAMPLER_BINDING})) {
             keep("unit " + std::to_string(unit) + " " + hex(name),
                  [&](double* out) { get_double_(name, out); });
         }
@@ -183,29 +194,29 @@ GLuint counting_program(const caller_functions& gl) {
 /// Sets whatever there is to something that is not its default and would spoil our work.
 void set_unusual_state(const caller_functions& gl) {
     GL_CALL(PFNGLUSEPROGRAMPROC, glUseProgram, counting_program(gl));
-    for (const GLenum name : {GL_DEPTH_TEST,
-                              GL_STENCIL_TEST,
-                              GL_CULL_FACE,
-                              GL_COLOR_LOGIC_OP,
-                              GL_POLYGON_OFFSET_FILL,
-                              GL_POLYGON_SMOOTH,
-                              GL_DEPTH_CLAMP,
-                              GL_FRAMEBUFFER_SRGB,
-                              GL_PRIMITIVE_RESTART,
-                              GL_PRIMITIVE_RESTART_FIXED_INDEX,
-                              GL_SAMPLE_ALPHA_TO_COVERAGE,
-                              GL_SAMPLE_ALPHA_TO_ONE,
-                              GL_SAMPLE_COVERAGE,
-                              GL_SAMPLE_MASK,
-                              GL_SAMPLE_SHADING,
-                              GL_RASTERIZER_DISCARD,
-                              GL_CLIP_DISTANCE0,
-                              GL_CLIP_DISTANCE3,
-                              GL_CLIP_DISTANCE7,
-                              GL_LINE_SMOOTH,
-                              GL_POLYGON_OFFSET_LINE,
-                              GL_PROGRAM_POINT_SIZE,
-                              GL_TEXTURE_CUBE_MAP_SEAMLESS}) {
+    for (const GLenum name : names({GL_DEPTH_TEST,
+                                    GL_STENCIL_TEST,
+                                    GL_CULL_FACE,
+                                    GL_COLOR_LOGIC_OP,
+                                    GL_POLYGON_OFFSET_FILL,
+                                    GL_POLYGON_SMOOTH,
+                                    GL_DEPTH_CLAMP,
+                                    GL_FRAMEBUFFER_SRGB,
+                                    GL_PRIMITIVE_RESTART,
+                                    GL_PRIMITIVE_RESTART_FIXED_INDEX,
+                                    GL_SAMPLE_ALPHA_TO_COVERAGE,
+                                    GL_SAMPLE_ALPHA_TO_ONE,
+                                    GL_SAMPLE_COVERAGE,
+                                    GL_SAMPLE_MASK,
+                                    GL_SAMPLE_SHADING,
+                                    GL_RASTERIZER_DISCARD,
+                                    GL_CLIP_DISTANCE0,
+                                    GL_CLIP_DISTANCE3,
+                                    GL_CLIP_DISTANCE7,
+                                    GL_LINE_SMOOTH,
+                                    GL_POLYGON_OFFSET_LINE,
+                                    GL_PROGRAM_POINT_SIZE,
+                                    GL_TEXTURE_CUBE_MAP_SEAMLESS})) {
         GL_CALL(PFNGLENABLEPROC, glEnable, name);
     }
     GL_CALL(PFNGLDISABLEPROC, glDisable, GL_MULTISAMPLE);
@@ -247,14 +258,14 @@ void set_unusual_state(const caller_functions& gl) {
     GL_CALL(PFNGLLINEWIDTHPROC, glLineWidth, 1.0f);
     GL_CALL(PFNGLPOINTSIZEPROC, glPointSize, 5.0f);
     GL_CALL(PFNGLPATCHPARAMETERIPROC, glPatchParameteri, GL_PATCH_VERTICES, 5);
-    for (const GLenum name :
-         {GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_IMAGES,
-          GL_UNPACK_IMAGE_HEIGHT, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS,
-          GL_PACK_SKIP_IMAGES, GL_PACK_IMAGE_HEIGHT}) {
+    for (const GLenum name : names(
+             {GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS,
+              GL_UNPACK_SKIP_IMAGES, GL_UNPACK_IMAGE_HEIGHT, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS,
+              GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_IMAGES, GL_PACK_IMAGE_HEIGHT})) {
         GL_CALL(PFNGLPIXELSTOREIPROC, glPixelStorei, name, 37);
     }
-    for (const GLenum name : {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST, GL_PACK_SWAP_BYTES,
-                              GL_PACK_LSB_FIRST, GL_UNPACK_ALIGNMENT, GL_PACK_ALIGNMENT}) {
+    for (const GLenum name : names({GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST, GL_PACK_SWAP_BYTES,
+                                    GL_PACK_LSB_FIRST, GL_UNPACK_ALIGNMENT, GL_PACK_ALIGNMENT})) {
         GL_CALL(PFNGLPIXELSTOREIPROC, glPixelStorei, name, 1);
     }
     GL_CALL(PFNGLPIXELSTOREIPROC, glPixelStorei, GL_PACK_ALIGNMENT, 8);
@@ -286,10 +297,10 @@ void bind_unusual_objects(const caller_functions& gl) {
     part(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffers[17], 64, 128);
     GLuint next = 18;
     for (const GLenum target :
-         {GL_ARRAY_BUFFER, GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, GL_DRAW_INDIRECT_BUFFER,
-          GL_DISPATCH_INDIRECT_BUFFER, GL_PIXEL_PACK_BUFFER, GL_PIXEL_UNPACK_BUFFER,
-          GL_QUERY_BUFFER, GL_TEXTURE_BUFFER, GL_SHADER_STORAGE_BUFFER, GL_UNIFORM_BUFFER,
-          GL_TRANSFORM_FEEDBACK_BUFFER}) {
+         names({GL_ARRAY_BUFFER, GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, GL_DRAW_INDIRECT_BUFFER,
+                GL_DISPATCH_INDIRECT_BUFFER, GL_PIXEL_PACK_BUFFER, GL_PIXEL_UNPACK_BUFFER,
+                GL_QUERY_BUFFER, GL_TEXTURE_BUFFER, GL_SHADER_STORAGE_BUFFER, GL_UNIFORM_BUFFER,
+                GL_TRANSFORM_FEEDBACK_BUFFER})) {
         GL_CALL(PFNGLBINDBUFFERPROC, glBindBuffer, target, buffers[next++]);
     }
     GL_CALL(PFNGLCREATEVERTEXARRAYSPROC, glCreateVertexArrays, 1, &object);
@@ -441,8 +452,9 @@ TEST_F(state_test, is_the_callers_again_after_each_step) {
     // The snapshot sees what was set: that many states, and among them these.
     const auto set = differences(fresh, unusual);
     EXPECT_GT(set.size(), 200u);
-    for (const GLenum name : {GL_CLIP_DEPTH_MODE, GL_PROVOKING_VERTEX, GL_CURRENT_PROGRAM,
-                              GL_SAMPLE_MASK, GL_UNPACK_ROW_LENGTH, GL_VERTEX_ARRAY_BINDING}) {
+    for (const GLenum name :
+         names({GL_CLIP_DEPTH_MODE, GL_PROVOKING_VERTEX, GL_CURRENT_PROGRAM, GL_SAMPLE_MASK,
+                GL_UNPACK_ROW_LENGTH, GL_VERTEX_ARRAY_BINDING})) {
         EXPECT_NE(std::find(set.begin(), set.end(), hex(name)), set.end()) << hex(name);
     }
     auto made = gpu::create(caller.describe());
@@ -462,7 +474,7 @@ TEST_F(state_test, a_running_transform_feedback_of_the_callers_goes_on) {
     bind_unusual_objects(gl);
     GLuint framebuffer = 0;
     GL_CALL(PFNGLCREATEFRAMEBUFFERSPROC, glCreateFramebuffers, 1, &framebuffer);
-    for (const GLenum name : {GL_FRAMEBUFFER_DEFAULT_WIDTH, GL_FRAMEBUFFER_DEFAULT_HEIGHT}) {
+    for (const GLenum name : names({GL_FRAMEBUFFER_DEFAULT_WIDTH, GL_FRAMEBUFFER_DEFAULT_HEIGHT})) {
         GL_CALL(PFNGLNAMEDFRAMEBUFFERPARAMETERIPROC, glNamedFramebufferParameteri, framebuffer,
                 name, 1);
     }
