@@ -105,7 +105,7 @@ class device {
     }
     [[nodiscard]] skybark::result<void> download(const buffer& from, std::uint64_t offset,
                                                  std::span<std::byte> out) {
-        std::copy_n(from.data() + offset, out.size(), out.data());
+        std::copy_n(from.data() + offset, out.size(), out.begin());
         traffic_.down += out.size();
         return {};
     }

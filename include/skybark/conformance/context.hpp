@@ -158,7 +158,9 @@ class context {
             }
         }
         std::vector<T> records(g.size / sizeof(T));
-        std::memcpy(records.data(), all.data() + g.before, records.size() * sizeof(T));
+        if (!records.empty()) {
+            std::memcpy(records.data(), all.data() + g.before, records.size() * sizeof(T));
+        }
         return records;
     }
 

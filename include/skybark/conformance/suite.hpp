@@ -252,7 +252,7 @@ class quiet_printer : public testing::EmptyTestEventListener {
     }
 };
 
-/// Runs the registered cases; 0 when none has failed. Initialises GoogleTest.
+/// Runs the registered cases; 0 when none has failed and there were some. Initialises GoogleTest.
 [[nodiscard]] inline int run(const options& what) {
     std::string filter;
     const std::string glob = what.filter.empty() ? "*" : what.filter;
@@ -273,7 +273,12 @@ class quiet_printer : public testing::EmptyTestEventListener {
         listeners.Append(new quiet_printer);
     }
     write_report(what.json);
-    return RUN_ALL_TESTS();
+    const int status = RUN_ALL_TESTS();
+    if (testing::UnitTest::GetInstance()->test_to_run_count() == 0) {
+        std::fprintf(stderr, "No case is called %s.\n", filter.c_str());
+        return 1;
+    }
+    return status;
 }
 
 } // namespace skybark::conformance
