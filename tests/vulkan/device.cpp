@@ -99,7 +99,7 @@ TEST_F(one_device, a_missing_barrier_would_be_noticed) {
     EXPECT_NE(other.text().find("READ_AFTER_WRITE"), std::string::npos) << other.text();
 }
 
-TEST_F(one_device, gpu_assisted_validation_sees_no_access_out_of_bounds) {
+TEST_F(one_device, runs_under_gpu_assisted_validation) {
     vulkan::headless_options o = options();
     o.gpu_assisted = true;
     log other;

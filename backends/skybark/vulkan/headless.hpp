@@ -7,7 +7,7 @@
 //
 // Everything that its device made must be gone before it is.
 
-#include <skybark/vulkan/recorder.hpp>
+#include <skybark/vulkan/transfers.hpp>
 
 #include <dlfcn.h>
 #include <functional>
@@ -24,8 +24,9 @@ using message_sink = std::function<void(const message&)>;
 struct headless_options {
     std::uint32_t device = 0; ///< index into `headless::devices()`
     bool validation = false;  ///< the Khronos layer, with synchronisation validation
-    /// With `validation`: shaders check their own accesses too. The only thing that notices a
-    /// write past a buffer's end; slow.
+    /// With `validation`: shaders check their own accesses too, slowly. The layer checks the ends
+    /// of bound buffers only on devices that have descriptor indexing; Mesa 22.3's lavapipe has
+    /// not.
     bool gpu_assisted = false;
     message_sink sink; ///< with `validation`
     // As in device_description.

@@ -2,10 +2,15 @@
 // The Vulkan backend in one include, with the programs of the kernels that we ship. A VkDevice to
 // run it on is yours, or headless.hpp's.
 
-#include <skybark/vulkan/recorder.hpp>
+#include <skybark/vulkan/transfers.hpp>
 
 #include <skybark/vulkan/programs/branch_cap.hpp>
+#include <skybark/vulkan/programs/cast_shadow.hpp>
+#include <skybark/vulkan/programs/clear_sky.hpp>
+#include <skybark/vulkan/programs/develop.hpp>
 #include <skybark/vulkan/programs/hermite_branch.hpp>
+#include <skybark/vulkan/programs/lit_branch.hpp>
+#include <skybark/vulkan/programs/meadow_ground.hpp>
 #include <skybark/vulkan/programs/probe_image.hpp>
 #include <skybark/vulkan/programs/probe_level.hpp>
 #include <skybark/vulkan/programs/probe_map.hpp>
