@@ -83,6 +83,16 @@ struct polygon {
 }
 inline constexpr int plane_count = 6;
 
+/// Where the edge from corner `in` (inside of a plane by `inside`) to `out` meets the plane: the
+/// same bits for both triangles of a shared edge. In double precision, because on an edge from far
+/// behind the eye to far before it w has lost its digits where it is small.
+[[nodiscard]] inline corner cut(const corner& in, const corner& out, double inside,
+                                double outside) {
+    const double t = inside / (inside - outside);
+    return {glm::vec4(glm::mix(glm::dvec4(in.position), glm::dvec4(out.position), t)),
+            glm::vec3(glm::mix(glm::dvec3(in.weights), glm::dvec3(out.weights), t))};
+}
+
 [[nodiscard]] inline polygon clip_by_plane(const polygon& in, int plane) {
     polygon out;
     for (int i = 0; i < in.count; ++i) {
@@ -94,9 +104,7 @@ inline constexpr int plane_count = 6;
             out.corners[out.count++] = a;
         }
         if ((da >= 0) != (db >= 0)) {
-            const float t = da / (da - db);
-            out.corners[out.count++] = {glm::mix(a.position, b.position, t),
-                                        glm::mix(a.weights, b.weights, t)};
+            out.corners[out.count++] = da >= 0 ? cut(a, b, da, db) : cut(b, a, db, da);
         }
     }
     return out;
@@ -131,12 +139,16 @@ inline void project(const corner* c0, const corner* c1, const corner* c2,
     };
     for (int i = 0; i < 3; ++i) {
         const glm::vec4& p = corners[i]->position;
-        if (!(p.w > 0)) {
+        // Smaller ones have no inverse that is a number.
+        if (!(p.w >= std::numeric_limits<float>::min())) {
             return;
         }
         const float inverse_w = 1.0f / p.w;
-        t.x[i] = fixed((p.x * inverse_w * 0.5f + 0.5f) * static_cast<float>(size.width));
-        t.y[i] = fixed((0.5f - p.y * inverse_w * 0.5f) * static_cast<float>(size.height));
+        // Clipping leaves coordinates within the band but for rounding, which a tiny w magnifies.
+        const float x = std::clamp(p.x * inverse_w, -guard_band, guard_band);
+        const float y = std::clamp(p.y * inverse_w, -guard_band, guard_band);
+        t.x[i] = fixed((x * 0.5f + 0.5f) * static_cast<float>(size.width));
+        t.y[i] = fixed((0.5f - y * 0.5f) * static_cast<float>(size.height));
         t.z[i] = p.z * inverse_w;
         t.inverse_w[i] = inverse_w;
         t.weights[i] = corners[i]->weights;
