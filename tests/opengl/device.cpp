@@ -357,6 +357,50 @@ TEST_F(lent_test, wrapped_objects_are_used_and_not_deleted) {
     gl.delete_textures(1, &texture);
 }
 
+// ---- The programs that come with the library ----------------------------------------------------
+
+/// Nothing to do still compiles the programs of each pattern that K takes part in.
+template <class K>
+void compile_all(gpu& device, const image& some, const image& target) {
+    const auto done = skybark::run(device, [&](recorder& r) {
+        if constexpr (map_kernel<K>) {
+            r.map(K{}, {}, range{});
+            r.map(K{}, {}, std::span<const range>{});
+        }
+        if constexpr (strip_kernel<K>) {
+            r.expand(K{}, {}, range{}, {{}, {}, padding::compact});
+            r.expand(K{}, {}, range{}, {{}, {}, padding::degenerate});
+        }
+        if constexpr (ring_kernel<K>) {
+            r.expand_rings(K{}, {}, range{}, {});
+        }
+        if constexpr (draw_kernel<K>) {
+            image_bindings<gpu, K> images;
+            images.fill({&some});
+            r.draw(K{}, {}, images, {}, {&target, nullptr, {}, {}}, {});
+        }
+    });
+    EXPECT_TRUE(done) << done.error().message;
+}
+
+template <class... Kernels>
+struct kernel_list {
+    static void compile(gpu& device, const image& some, const image& target) {
+        (compile_all<Kernels>(device, some, target), ...);
+    }
+};
+using all_kernels = kernel_list<kernels::branch_cap, kernels::cast_shadow, kernels::clear_sky,
+                                kernels::develop, kernels::hermite_branch, kernels::lit_branch,
+                                kernels::meadow_ground, kernels::probe_image, kernels::probe_level,
+                                kernels::probe_map, kernels::probe_rings, kernels::probe_strips,
+                                kernels::probe_surface, kernels::ring_indices>;
+
+TEST_F(device_test, every_program_compiles_without_complaint) {
+    const image some = *device().create_image({4, 4});
+    const image target = *device().create_image({4, 4});
+    all_kernels::compile(device(), some, target);
+}
+
 // ---- Errors of a recorder -----------------------------------------------------------------------
 
 } // namespace

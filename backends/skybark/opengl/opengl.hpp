@@ -9,7 +9,12 @@
 
 #include <skybark/opengl/device.hpp>
 #include <skybark/opengl/programs/branch_cap.hpp>
+#include <skybark/opengl/programs/cast_shadow.hpp>
+#include <skybark/opengl/programs/clear_sky.hpp>
+#include <skybark/opengl/programs/develop.hpp>
 #include <skybark/opengl/programs/hermite_branch.hpp>
+#include <skybark/opengl/programs/lit_branch.hpp>
+#include <skybark/opengl/programs/meadow_ground.hpp>
 #include <skybark/opengl/programs/probe_image.hpp>
 #include <skybark/opengl/programs/probe_level.hpp>
 #include <skybark/opengl/programs/probe_map.hpp>
