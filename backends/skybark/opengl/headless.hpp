@@ -9,6 +9,7 @@
 // it so. It first releases whatever EGL, OSMesa or GLFW context is current there: EGL and OSMesa
 // share one notion of the current context without knowing of each other, so one made current over
 // the other would get the other's calls. Who has a context of their own makes it current again.
+// The context is known by its debug callback, which therefore is ours; options.debug is for yours.
 
 #include <skybark/opengl/device.hpp>
 
