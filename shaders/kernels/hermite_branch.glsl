@@ -69,10 +69,8 @@ void kernel_strip(uint i, uint strip, uint first, uint count) {
     branch_ring lower = ring_at(a, b, c, strip - 1u);
     branch_ring upper = ring_at(a, b, c, strip);
     for (uint j = first; j < last; ++j) {
-        if ((j & 1u) == 0u) {
-            emit_surface(branch_vertex(upper, corners[j / 2u]));
-        } else {
-            emit_surface(branch_vertex(lower, corners[j / 2u]));
-        }
+        // One place that emits: software devices run both sides of a branch.
+        bool above = (j & 1u) == 0u;
+        emit_surface(branch_vertex(above ? upper : lower, corners[j / 2u]));
     }
 }

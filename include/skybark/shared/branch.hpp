@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 724090deb8253e0f93cef440c8648bab77f78c54d8e21eb8e5bd001ed846f64a
+// sha256 a07483f9384b1a5c509549bf555d24ef178404c32e117f60881f73667dad11dd
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -12,17 +12,25 @@ namespace skybark::shared {
 
 // One ring of a branch's surface, and the vertices on it (Akagi and Kitajima, 2.2 and 3.3).
 
-// A ring: its centre, its axes (y along the growth) and what is linear along the segment.
+// A ring: its centre, its axes (y along the growth) and what is linear along the segment. Where
+// the radius changes by `slope` along the growth, the normals lean: outwards by `lean`, which is
+// 1 / sqrt(1 + slope^2), and against the growth by `tilt`, y * slope * lean.
 struct branch_ring {
     vec3 centre;
     float radius;
     vec3 x;
     float path;
     vec3 y;
-    float slope;
+    float lean;
     vec3 z;
-    float reserved;
+    vec3 tilt;
 };
+
+inline branch_ring branch_ring_leaning(branch_ring r, float slope) {
+    r.lean = 1.0f / sqrt(1.0f + slope * slope);
+    r.tilt = r.y * (slope * r.lean);
+    return r;
+}
 
 // What all rings of a segment share.
 struct branch_curve {
@@ -57,12 +65,10 @@ inline branch_ring branch_ring_slerp(branch_end a, branch_end b, branch_curve c,
     r.centre = hermite_point(c.p1, c.n1, c.p2, c.n2, t);
     r.radius = a.radius * (1.0f - t) + b.radius * t;
     r.path = a.path * (1.0f - t) + b.path * t;
-    r.slope = a.slope * (1.0f - t) + b.slope * t;
     r.x = quaternion_x(q);
     r.y = quaternion_y(q);
     r.z = quaternion_z(q);
-    r.reserved = 0.0f;
-    return r;
+    return branch_ring_leaning(r, a.slope * (1.0f - t) + b.slope * t);
 }
 
 // The unit direction of the centreline at ring k of `last`, or the start's own where it has none.
@@ -105,7 +111,8 @@ inline branch_ring branch_ring_rotation_minimising(branch_end a, branch_end b, b
     r.y = d_here;
     r.x = unit_or(turned - d_here * dot3(turned, d_here), r.x);
     r.z = cross3(r.x, r.y);
-    return r;
+    return branch_ring_leaning(r, a.slope * (1.0f - float(k) / float(last)) +
+                                      b.slope * (float(k) / float(last)));
 }
 
 // The vertex of a ring at a point (cos, sin, u, -) of the unit polygon. Seen from the tip the
@@ -114,10 +121,9 @@ inline surface_vertex branch_vertex(branch_ring r, vec4 corner) {
     surface_vertex vertex;
     vec3 outward = r.x * corner.x - r.z * corner.y;
     vec3 along = r.x * corner.y + r.z * corner.x;
-    float lean = 1.0f / sqrt(1.0f + r.slope * r.slope);
     vertex.position = r.centre + outward * r.radius;
     vertex.u = corner.z;
-    vertex.normal = outward * lean - r.y * (r.slope * lean);
+    vertex.normal = outward * r.lean - r.tilt;
     vertex.v = r.path;
     vertex.tangent = vec4(-along.x, -along.y, -along.z, 1.0f);
     return vertex;
@@ -132,12 +138,10 @@ inline branch_ring branch_ring_at_end(branch_end e) {
     r.centre = e.position;
     r.radius = e.radius;
     r.path = e.path;
-    r.slope = 0.0f;
     r.x = quaternion_x(q);
     r.y = quaternion_y(q);
     r.z = quaternion_z(q);
-    r.reserved = 0.0f;
-    return r;
+    return branch_ring_leaning(r, 0.0f);
 }
 
 // The corner of the polygon that vertex i of a cap's strip is: 0, 1, n-1, 2, n-2, ... counter-

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 9f26c66b04685a871ed9b58f9da7eb9c512b74d9656b0422d74a3e25a862cfdb
+// sha256 83cab8ba9b743645900fafb38f654e41875373148001b1fa77f4c4c8c7e21a20
 #pragma once
 
 #include <skybark/kernels/hermite_branch.hpp>
@@ -164,10 +164,15 @@ struct branch_ring {
     vec3 x;
     float path;
     vec3 y;
-    float slope;
+    float lean;
     vec3 z;
-    float reserved;
+    vec3 tilt;
 };
+branch_ring branch_ring_leaning(branch_ring r, float slope) {
+    r.lean = 1.0f / sqrt(1.0f + slope * slope);
+    r.tilt = r.y * (slope * r.lean);
+    return r;
+}
 struct branch_curve {
     vec3 p1;
     vec3 n1;
@@ -194,12 +199,10 @@ branch_ring branch_ring_slerp(branch_end a, branch_end b, branch_curve c, float 
     r.centre = hermite_point(c.p1, c.n1, c.p2, c.n2, t);
     r.radius = a.radius * (1.0f - t) + b.radius * t;
     r.path = a.path * (1.0f - t) + b.path * t;
-    r.slope = a.slope * (1.0f - t) + b.slope * t;
     r.x = quaternion_x(q);
     r.y = quaternion_y(q);
     r.z = quaternion_z(q);
-    r.reserved = 0.0f;
-    return r;
+    return branch_ring_leaning(r, a.slope * (1.0f - t) + b.slope * t);
 }
 vec3 branch_direction(branch_end a, branch_curve c, uint k, uint last) {
     float t = float(k) / float(last);
@@ -235,16 +238,16 @@ branch_ring branch_ring_rotation_minimising(branch_end a, branch_end b, branch_c
     r.y = d_here;
     r.x = unit_or(turned - d_here * dot3(turned, d_here), r.x);
     r.z = cross3(r.x, r.y);
-    return r;
+    return branch_ring_leaning(r, a.slope * (1.0f - float(k) / float(last)) +
+                                      b.slope * (float(k) / float(last)));
 }
 surface_vertex branch_vertex(branch_ring r, vec4 corner) {
     surface_vertex vertex;
     vec3 outward = r.x * corner.x - r.z * corner.y;
     vec3 along = r.x * corner.y + r.z * corner.x;
-    float lean = 1.0f / sqrt(1.0f + r.slope * r.slope);
     vertex.position = r.centre + outward * r.radius;
     vertex.u = corner.z;
-    vertex.normal = outward * lean - r.y * (r.slope * lean);
+    vertex.normal = outward * r.lean - r.tilt;
     vertex.v = r.path;
     vertex.tangent = vec4(-along.x, -along.y, -along.z, 1.0f);
     return vertex;
@@ -257,12 +260,10 @@ branch_ring branch_ring_at_end(branch_end e) {
     r.centre = e.position;
     r.radius = e.radius;
     r.path = e.path;
-    r.slope = 0.0f;
     r.x = quaternion_x(q);
     r.y = quaternion_y(q);
     r.z = quaternion_z(q);
-    r.reserved = 0.0f;
-    return r;
+    return branch_ring_leaning(r, 0.0f);
 }
 uint branch_cap_corner(uint i, uint sides, bool base) {
     uint corner = i == 0u ? 0u : ((i & 1u) == 1u ? (i + 1u) / 2u : sides - i / 2u);
@@ -334,11 +335,8 @@ void kernel_strip(uint i, uint strip, uint first, uint count) {
     branch_ring lower = ring_at(a, b, c, strip - 1u);
     branch_ring upper = ring_at(a, b, c, strip);
     for (uint j = first; j < last; ++j) {
-        if ((j & 1u) == 0u) {
-            emit_surface(branch_vertex(upper, corners[j / 2u]));
-        } else {
-            emit_surface(branch_vertex(lower, corners[j / 2u]));
-        }
+        bool above = (j & 1u) == 0u;
+        emit_surface(branch_vertex(above ? upper : lower, corners[j / 2u]));
     }
 }
 #ifndef SKYBARK_MAX_VERTICES
@@ -541,10 +539,15 @@ struct branch_ring {
     vec3 x;
     float path;
     vec3 y;
-    float slope;
+    float lean;
     vec3 z;
-    float reserved;
+    vec3 tilt;
 };
+branch_ring branch_ring_leaning(branch_ring r, float slope) {
+    r.lean = 1.0f / sqrt(1.0f + slope * slope);
+    r.tilt = r.y * (slope * r.lean);
+    return r;
+}
 struct branch_curve {
     vec3 p1;
     vec3 n1;
@@ -571,12 +574,10 @@ branch_ring branch_ring_slerp(branch_end a, branch_end b, branch_curve c, float 
     r.centre = hermite_point(c.p1, c.n1, c.p2, c.n2, t);
     r.radius = a.radius * (1.0f - t) + b.radius * t;
     r.path = a.path * (1.0f - t) + b.path * t;
-    r.slope = a.slope * (1.0f - t) + b.slope * t;
     r.x = quaternion_x(q);
     r.y = quaternion_y(q);
     r.z = quaternion_z(q);
-    r.reserved = 0.0f;
-    return r;
+    return branch_ring_leaning(r, a.slope * (1.0f - t) + b.slope * t);
 }
 vec3 branch_direction(branch_end a, branch_curve c, uint k, uint last) {
     float t = float(k) / float(last);
@@ -612,16 +613,16 @@ branch_ring branch_ring_rotation_minimising(branch_end a, branch_end b, branch_c
     r.y = d_here;
     r.x = unit_or(turned - d_here * dot3(turned, d_here), r.x);
     r.z = cross3(r.x, r.y);
-    return r;
+    return branch_ring_leaning(r, a.slope * (1.0f - float(k) / float(last)) +
+                                      b.slope * (float(k) / float(last)));
 }
 surface_vertex branch_vertex(branch_ring r, vec4 corner) {
     surface_vertex vertex;
     vec3 outward = r.x * corner.x - r.z * corner.y;
     vec3 along = r.x * corner.y + r.z * corner.x;
-    float lean = 1.0f / sqrt(1.0f + r.slope * r.slope);
     vertex.position = r.centre + outward * r.radius;
     vertex.u = corner.z;
-    vertex.normal = outward * lean - r.y * (r.slope * lean);
+    vertex.normal = outward * r.lean - r.tilt;
     vertex.v = r.path;
     vertex.tangent = vec4(-along.x, -along.y, -along.z, 1.0f);
     return vertex;
@@ -634,12 +635,10 @@ branch_ring branch_ring_at_end(branch_end e) {
     r.centre = e.position;
     r.radius = e.radius;
     r.path = e.path;
-    r.slope = 0.0f;
     r.x = quaternion_x(q);
     r.y = quaternion_y(q);
     r.z = quaternion_z(q);
-    r.reserved = 0.0f;
-    return r;
+    return branch_ring_leaning(r, 0.0f);
 }
 uint branch_cap_corner(uint i, uint sides, bool base) {
     uint corner = i == 0u ? 0u : ((i & 1u) == 1u ? (i + 1u) / 2u : sides - i / 2u);
@@ -711,11 +710,8 @@ void kernel_strip(uint i, uint strip, uint first, uint count) {
     branch_ring lower = ring_at(a, b, c, strip - 1u);
     branch_ring upper = ring_at(a, b, c, strip);
     for (uint j = first; j < last; ++j) {
-        if ((j & 1u) == 0u) {
-            emit_surface(branch_vertex(upper, corners[j / 2u]));
-        } else {
-            emit_surface(branch_vertex(lower, corners[j / 2u]));
-        }
+        bool above = (j & 1u) == 0u;
+        emit_surface(branch_vertex(above ? upper : lower, corners[j / 2u]));
     }
 }
 #ifndef SKYBARK_MAX_VERTICES
