@@ -441,7 +441,7 @@ void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
         if (!out.keep) {
             return;
         }
-        if (depth != nullptr && state.depth_write && state.depth_test) {
+        if (depth != nullptr && state.depth_write) {
             depth[index] = z;
         }
         if (target.color != nullptr) {

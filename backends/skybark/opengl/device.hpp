@@ -324,8 +324,12 @@ void recorder::expand_rings(const K& kernel, const bindings<device, K>& buffers,
         expansion.primitive = gl::points;
         expansion.parts = detail::ring_parts(kernel.ring_vertices(), sizeof(typename K::vertex));
         expansion.vertices = detail::bound(out);
+        const std::uint64_t each = kernel.ring_vertices() * sizeof(typename K::vertex);
+        const std::uint64_t room = each == 0 ? 0 : out.size / each;
+        const auto count =
+            static_cast<std::uint32_t>(std::min<std::uint64_t>(elements.count, room));
         return detail::expand(*context_, {detail::bytes_of(kernel), ranges},
-                              {elements.first, elements.count, {}}, expansion);
+                              {elements.first, count, {}}, expansion);
     });
 }
 

@@ -10,6 +10,7 @@
 //    element by element.
 //  - Capacity. Nothing is written past the end of a view. `expand` fills what fits, in order and in
 //    whole triangles, and reports {written, required} in a count_record on the device.
+//    `expand_rings` makes the elements that fit, whole.
 //  - Padding. `padding::degenerate` gives every element strips() · strip_triangles() triangles in a
 //    row; those that it does not have follow, strip by strip, as triangles whose three vertices are
 //    all zero bytes. `padding::compact` leaves them out.
@@ -114,8 +115,8 @@ enum class filter_mode { nearest, linear };
 enum class wrap_mode { clamp, repeat };
 
 struct draw_state {
-    bool depth_test = true; ///< nearer or equal passes
-    bool depth_write = true;
+    bool depth_test = true;  ///< nearer or equal passes; without it all do
+    bool depth_write = true; ///< of what passes
     blend_mode blend = blend_mode::none;
     cull_mode cull = cull_mode::none;
 };
