@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 a07483f9384b1a5c509549bf555d24ef178404c32e117f60881f73667dad11dd
+// sha256 b2bb0a4b3fc782ede71e1073969299e8814285c0a612500ecb96585b9b4f18f1
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -86,13 +86,15 @@ inline branch_ring branch_ring_rotation_minimising(branch_end a, branch_end b, b
     if (k == 0u || k == last) {
         return r;
     }
+    // From the start on, so that a place far from the origin doesn't round short steps away.
+    vec3 chord = c.p2 - c.p1;
     vec3 x = quaternion_x(a.orientation);
     vec3 x_here = x;
-    vec3 p = c.p1;
+    vec3 p = vec3(0.0f, 0.0f, 0.0f);
     vec3 d = branch_direction(a, c, 0u, last);
     vec3 d_here = d;
     for (uint i = 1u; i <= last; ++i) {
-        vec3 p_next = hermite_point(c.p1, c.n1, c.p2, c.n2, float(i) / float(last));
+        vec3 p_next = hermite_point(vec3(0.0f, 0.0f, 0.0f), c.n1, chord, c.n2, float(i) / float(last));
         vec3 d_next = branch_direction(a, c, i, last);
         x = double_reflection(p, d, x, p_next, d_next);
         p = p_next;

@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace skybark::trees {
 
@@ -57,6 +59,7 @@ class branch_layout_builder {
         }
         unfold();
         smooth_slopes();
+        lower_slopes();
         return std::move(layout_);
     }
 
@@ -121,6 +124,9 @@ class branch_layout_builder {
         branch_end end;
         end.position = from_.tip(i);
         end.radius = from_.radius[i];
+        if (is_rounding(end.position - from.position, end.position)) {
+            end.position = from.position;
+        }
         chord_[i] = end.position - from.position;
         const float length = glm::length(chord_[i]);
         end.path = from.path + length;
@@ -131,6 +137,14 @@ class branch_layout_builder {
         layout_.ends.push_back(end);
         layout_.segments[i] = {start, static_cast<std::uint32_t>(layout_.ends.size() - 1), cap_end,
                                0};
+    }
+
+    /// Whether a chord is no more than what floats near `place` leave of one without length. Its
+    /// direction would be noise.
+    [[nodiscard]] static bool is_rounding(const glm::vec3& chord, const glm::vec3& place) {
+        constexpr float ulps = 4 * std::numeric_limits<float>::epsilon();
+        const glm::vec3 p = glm::abs(place);
+        return glm::length(chord) <= ulps * std::max({p.x, p.y, p.z});
     }
 
     /// Turns joints, and takes chains apart where that is not enough, until no segment folds.
@@ -156,41 +170,58 @@ class branch_layout_builder {
         return any;
     }
 
-    /// Whether a ring of segment `i` reaches through the next. Rings k and k + 1 with centres a
-    /// distance d apart and normals y at an angle of delta stay clear of each other all around if
-    /// d · (y_k + y_k+1) > (r_k + r_k+1) sin delta.
+    /// Whether the centreline of segment `i` turns back (its Bézier points do not, as long as both
+    /// ends look along the chord), a ring reaches through the next, or normals lean so far that a
+    /// side faces against them. Rings k and k + 1 with centres a distance d apart and normals y at
+    /// an angle of delta stay clear of each other all around if
+    /// d · (y_k + y_k+1) > (r_k + r_k+1) sin delta. A slope s leaves
+    /// 2 s (r_k+1 - r_k) - |s| |d x (y_k + y_k+1)| more of it.
     [[nodiscard]] bool folds(std::uint32_t i) const {
-        const branch_end& a = layout_.ends[layout_.segments[i].start];
-        const branch_end& b = layout_.ends[layout_.segments[i].end];
-        if (glm::dot(chord_[i], chord_[i]) == 0 || a.orientation == b.orientation) {
-            return false;
+        const branch_segment& segment = layout_.segments[i];
+        const branch_end& a = layout_.ends[segment.start];
+        const branch_end& b = layout_.ends[segment.end];
+        const bool parallel = a.orientation == b.orientation;
+        const bool alone = parallel && segment.caps == (cap_start | cap_end); // and so straight
+        if (glm::dot(chord_[i], chord_[i]) == 0 || (alone && a.slope == 0 && b.slope == 0)) {
+            return !parallel;
+        }
+        const shared::branch_curve curve = shared::branch_curve_between(a, b);
+        if (glm::dot(curve.n1, chord_[i]) < 0 || glm::dot(curve.n2, chord_[i]) < 0) {
+            return true;
         }
         constexpr std::uint32_t gaps = 8;
-        const shared::branch_curve curve = shared::branch_curve_between(a, b);
-        glm::vec3 centre = a.position;
-        glm::vec3 normal = shared::quaternion_y(a.orientation);
-        float radius = a.radius;
+        shared::branch_ring ring = shared::branch_ring_slerp(a, b, curve, 0);
         for (std::uint32_t k = 1; k <= gaps; ++k) {
             const shared::branch_ring next =
                 frames_ == kernels::branch_frame::slerp
                     ? shared::branch_ring_slerp(a, b, curve, static_cast<float>(k) / gaps)
                     : shared::branch_ring_rotation_minimising(a, b, curve, k, gaps);
-            const float clear = glm::dot(next.centre - centre, normal + next.y);
-            if (clear <= (radius + next.radius) * glm::length(glm::cross(normal, next.y))) {
-                return true;
+            const glm::vec3 d = next.centre - ring.centre;
+            const glm::vec3 y = ring.y + next.y;
+            const float clear = glm::dot(d, y) - (ring.radius + next.radius) *
+                                                     glm::length(glm::cross(ring.y, next.y));
+            const float step = 2 * (next.radius - ring.radius);
+            const float across = glm::length(glm::cross(d, y));
+            for (const std::uint32_t at : {k - 1, k}) {
+                const float slope = glm::mix(a.slope, b.slope, static_cast<float>(at) / gaps);
+                if (clear + slope * step - std::abs(slope) * across <= 0) {
+                    return true;
+                }
             }
-            centre = next.centre;
-            normal = next.y;
-            radius = next.radius;
+            ring = next;
         }
         return false;
     }
 
-    /// Turns both ends of segment `i` towards each other.
+    /// Turns both ends of segment `i` towards each other; all the way where nothing is between.
     void straighten(std::uint32_t i) {
         branch_end& a = layout_.ends[layout_.segments[i].start];
         branch_end& b = layout_.ends[layout_.segments[i].end];
         const glm::vec4 before = a.orientation;
+        if (glm::dot(chord_[i], chord_[i]) == 0) {
+            a.orientation = b.orientation = shared::slerp(before, b.orientation, 0.5f);
+            return;
+        }
         a.orientation = shared::slerp(before, b.orientation, 0.375f);
         b.orientation = shared::slerp(before, b.orientation, 0.625f);
     }
@@ -237,6 +268,22 @@ class branch_layout_builder {
         for (std::size_t i = 0; i < sums.size(); ++i) {
             const float slope = sums[i].y > 0 ? sums[i].x / sums[i].y : 0;
             layout_.ends[i].slope = std::clamp(slope, -steepest, steepest);
+        }
+    }
+
+    /// Lowers slopes that a neighbour brings about and that turn a normal against a side. Without a
+    /// slope no segment folds, and what is clear at a slope stays so at a lower one.
+    void lower_slopes() {
+        constexpr int halvings = 4;
+        for (std::uint32_t i = 0; i < layout_.segments.size(); ++i) {
+            for (int n = 0; folds(i); ++n) {
+                const float by = n < halvings ? 0.5f : 0.0f;
+                layout_.ends[layout_.segments[i].start].slope *= by;
+                layout_.ends[layout_.segments[i].end].slope *= by;
+                if (by == 0) {
+                    break;
+                }
+            }
         }
     }
 

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 83cab8ba9b743645900fafb38f654e41875373148001b1fa77f4c4c8c7e21a20
+// sha256 16f6b3b684acb39e3f572bbd6e4a03e78a8a503f91ed3c92873a13ed751d4e21
 #pragma once
 
 #include <skybark/kernels/hermite_branch.hpp>
@@ -214,13 +214,14 @@ branch_ring branch_ring_rotation_minimising(branch_end a, branch_end b, branch_c
     if (k == 0u || k == last) {
         return r;
     }
+    vec3 chord = c.p2 - c.p1;
     vec3 x = quaternion_x(a.orientation);
     vec3 x_here = x;
-    vec3 p = c.p1;
+    vec3 p = vec3(0.0f, 0.0f, 0.0f);
     vec3 d = branch_direction(a, c, 0u, last);
     vec3 d_here = d;
     for (uint i = 1u; i <= last; ++i) {
-        vec3 p_next = hermite_point(c.p1, c.n1, c.p2, c.n2, float(i) / float(last));
+        vec3 p_next = hermite_point(vec3(0.0f, 0.0f, 0.0f), c.n1, chord, c.n2, float(i) / float(last));
         vec3 d_next = branch_direction(a, c, i, last);
         x = double_reflection(p, d, x, p_next, d_next);
         p = p_next;
@@ -589,13 +590,14 @@ branch_ring branch_ring_rotation_minimising(branch_end a, branch_end b, branch_c
     if (k == 0u || k == last) {
         return r;
     }
+    vec3 chord = c.p2 - c.p1;
     vec3 x = quaternion_x(a.orientation);
     vec3 x_here = x;
-    vec3 p = c.p1;
+    vec3 p = vec3(0.0f, 0.0f, 0.0f);
     vec3 d = branch_direction(a, c, 0u, last);
     vec3 d_here = d;
     for (uint i = 1u; i <= last; ++i) {
-        vec3 p_next = hermite_point(c.p1, c.n1, c.p2, c.n2, float(i) / float(last));
+        vec3 p_next = hermite_point(vec3(0.0f, 0.0f, 0.0f), c.n1, chord, c.n2, float(i) / float(last));
         vec3 d_next = branch_direction(a, c, i, last);
         x = double_reflection(p, d, x, p_next, d_next);
         p = p_next;

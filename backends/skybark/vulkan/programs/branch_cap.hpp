@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f7adaf63175f2648440d005b49b94adc0bfb926eb776612b7d619640e36629ee
+// sha256 c7e41bc51f7808f232e71db47ae3db085b3bf6b3987c4ff1dfd56cd3036feb6e
 #pragma once
 
 #include <skybark/kernels/branch_cap.hpp>
