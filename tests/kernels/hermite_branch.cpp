@@ -381,6 +381,26 @@ TEST(hermite_branch, twist_is_spread_evenly) {
     }
 }
 
+// A tenth of a millimetre of twig at the top of a tree: floats there are 2e-6 m apart.
+TEST(hermite_branch, short_segments_turn_alike_wherever_they_are) {
+    support::random_source random(14);
+    for (const branch_frame frame : both_frames) {
+        one_branch here = random_branch(random, 5, 8, frame);
+        here.a.position = vec3(0);
+        here.b.position = shared::quaternion_y(here.a.orientation) * 1e-4f;
+        one_branch there = here;
+        there.a.position += vec3(3, 30, -5);
+        there.b.position += vec3(3, 30, -5);
+        here.b.position = there.b.position - there.a.position; // as rounded there
+        const auto near_by = here.rings();
+        const auto far_off = there.rings();
+        for (std::size_t i = 0; i < near_by.size(); ++i) {
+            ASSERT_LE(glm::length(near_by[i].normal - far_off[i].normal), 1e-5f) << i;
+            ASSERT_LE(glm::length(near_by[i].tangent - far_off[i].tangent), 1e-5f) << i;
+        }
+    }
+}
+
 TEST(hermite_branch, no_length_no_radius_no_turn) {
     support::random_source random(13);
     for (const branch_frame frame : both_frames) {

@@ -29,6 +29,18 @@ namespace skybark::support {
     return six / 6;
 }
 
+[[nodiscard]] inline double surface_area(std::span<const surface_vertex> vertices,
+                                         std::span<const std::uint32_t> indices) {
+    double sum = 0;
+    for (std::size_t k = 0; k + 2 < indices.size(); k += 3) {
+        const glm::dvec3 p(vertices[indices[k]].position);
+        sum += glm::length(glm::cross(glm::dvec3(vertices[indices[k + 1]].position) - p,
+                                      glm::dvec3(vertices[indices[k + 2]].position) - p)) /
+               2;
+    }
+    return sum;
+}
+
 /// Numbers vertices so that equal positions have equal numbers. Bits decide, but for −0.
 [[nodiscard]] inline std::vector<std::uint32_t> weld(std::span<const surface_vertex> vertices) {
     struct hash {
