@@ -12,8 +12,8 @@ int main() {
     // A skeleton: from your own data, or grown.
     const auto species = skybark::trees::quaking_aspen();
     const auto segments = skybark::trees::grow(species, 1);
-    const auto skeleton = segments.and_then(
-        [](const auto& found) { return skybark::trees::build_skeleton(found); });
+    const auto skeleton =
+        segments.and_then([](const auto& found) { return skybark::trees::build_skeleton(found); });
     if (!skeleton) {
         std::fprintf(stderr, "%s\n", skeleton.error().message.c_str());
         return 1;

@@ -14,7 +14,8 @@ TEXT = (ROOT / "README.md").read_text()
 
 
 def broken_links():
-    for target in re.findall(r"\]\(([^)#]+)\)", TEXT):
+    prose = re.sub(r"```.*?```", "", TEXT, flags=re.S)
+    for target in re.findall(r"\]\(([^)#]+)\)", prose):
         if "://" not in target and not (ROOT / target).exists():
             yield f"README.md links to {target}, which does not exist"
 
