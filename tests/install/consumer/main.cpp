@@ -1,23 +1,17 @@
-#include <skybark/core/result.hpp>
-#include <skybark/trees/skeleton.hpp>
+#include <skybark/cpu/cpu.hpp>
+#include <skybark/skybark.hpp>
 
 #include <cstdio>
 
-skybark::result<float> height(const skybark::trees::skeleton& tree) {
-    if (tree.empty()) {
-        return skybark::fail(skybark::error_code::bad_input,
-                             "A tree without segments has no height.");
-    }
-    return tree.tip(tree.size() - 1).y;
-}
-
 int main() {
-    skybark::trees::skeleton tree;
-    const bool empty_is_an_error = !height(tree).has_value();
-    tree.parent = {skybark::trees::none};
-    tree.orientation = {glm::quat(1, 0, 0, 0)};
-    tree.position = {glm::vec3(0)};
-    tree.length = {2};
-    std::printf("A tree of %zu segment is %g m high.\n", tree.size(), double(*height(tree)));
-    return empty_is_an_error && *height(tree) == 2 ? 0 : 1;
+    using backend = skybark::cpu::device;
+    backend device;
+    // One straight segment: three gaps of 2 · 8 triangles, and two caps of 6.
+    const skybark::trees::segment trunk{{0, 0, 0}, {0, 2, 0}, 0.2f, 0.1f};
+    const auto skeleton = skybark::trees::build_skeleton(std::span(&trunk, 1));
+    const auto mesh = skybark::trees::branch_mesh<backend>::create(device, *skeleton, {});
+    const auto done = skybark::run(device, [&](auto& recorder) { mesh->record(recorder); });
+    std::printf("A tree of %zu segment has %d triangles.\n", skeleton->size(),
+                static_cast<int>(mesh->triangles()));
+    return done && mesh->triangles() == 60 ? 0 : 1;
 }
