@@ -3,7 +3,7 @@
 
 #include "run_cases.hpp"
 
-#include "../../examples/04_own_backend.hpp"
+#include "../../examples/02_own_backend.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // Proves a backend of one's own: registers the conformance suite for it and runs all cases.
 
-#include "04_own_backend.hpp"
+#include "02_own_backend.hpp"
 
 #include <skybark/conformance/suite.hpp>
 

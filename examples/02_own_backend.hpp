@@ -3,7 +3,7 @@
 //
 // It shows what somebody who brings Skybark to another device has to write: a buffer, an image, a
 // recorder with a member function for each pattern that the device can do, and the tag that
-// promises to keep the contract. 04_own_backend.cpp proves it with the conformance suite.
+// promises to keep the contract. 02_own_backend.cpp proves it with the conformance suite.
 //
 // Nothing here is fast: each pattern is done when its call returns, one element after another.
 
