@@ -104,7 +104,7 @@ TEST(cpu_hermite_branch, equals_the_plain_kernel) {
     support::random_source random(1);
     for (const branch_frame frame : both_frames) {
         for (const std::uint32_t sides : {3u, 8u, 17u}) {
-            for (const std::uint32_t rings : {2u, 4u, 9u}) {
+            for (const std::uint32_t rings : {2u, 4u, 9u, 16u, 17u, 40u}) {
                 for (std::uint32_t count = 1; count <= 9; ++count) {
                     expect_same({sides, rings, frame}, random_input(random, count));
                 }
