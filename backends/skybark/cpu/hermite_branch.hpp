@@ -11,6 +11,10 @@
 
 #if defined(__GNUC__)
 
+#    if defined(__x86_64__)
+#        include <immintrin.h>
+#    endif
+
 namespace skybark::cpu {
 namespace lanes {
 
@@ -244,13 +248,27 @@ struct program<kernels::hermite_branch> {
         }
         const curve4 curve = curve4::between(ends4::gather(start), ends4::gather(end));
         const std::size_t ring_floats = std::size_t{kernel.sides + 1} * 12;
-        for (std::uint32_t k = 0; k < kernel.rings; ++k) {
-            const rings4 ring =
-                rings4::at(curve, static_cast<float>(k) / static_cast<float>(kernel.rings - 1));
+        // A segment's rings one after another: lines that are streamed in pieces, with others in
+        // between, are written twice.
+        constexpr std::uint32_t most_rings = 16;
+        rings4 rings[most_rings];
+#    if defined(__x86_64__)
+        const auto write = __builtin_cpu_supports("avx2") ? write_ring_avx2 : write_ring;
+#    else
+        const auto write = write_ring;
+#    endif
+        for (std::uint32_t done = 0; done < kernel.rings; done += most_rings) {
+            const std::uint32_t some = std::min(most_rings, kernel.rings - done);
+            for (std::uint32_t k = 0; k < some; ++k) {
+                rings[k] = rings4::at(curve, static_cast<float>(done + k) /
+                                                 static_cast<float>(kernel.rings - 1));
+            }
             for (std::uint32_t lane = 0; lane < count; ++lane) {
                 float* out = reinterpret_cast<float*>(to) +
-                             (std::size_t{lane} * kernel.rings + k) * ring_floats;
-                write_ring(ring, lane, out, corners.first(kernel.sides + 1));
+                             (std::size_t{lane} * kernel.rings + done) * ring_floats;
+                for (std::uint32_t k = 0; k < some; ++k) {
+                    write(rings[k], lane, out + k * ring_floats, corners.first(kernel.sides + 1));
+                }
             }
         }
     }
@@ -280,6 +298,51 @@ struct program<kernels::hermite_branch> {
             out += 12;
         }
     }
+
+#    if defined(__x86_64__)
+    [[gnu::target("avx2")]] static __m256 both(const lanes::f4& v) {
+        return _mm256_broadcast_ps(reinterpret_cast<const __m128*>(&v));
+    }
+
+    /// The same, two corners at a time.
+    [[gnu::target("avx2")]] static void write_ring_avx2(const lanes::rings4& ring,
+                                                        std::uint32_t lane, float* out,
+                                                        kernel_type::corners_span corners) {
+        const __m256 centre = both(ring.centre[lane]);
+        const __m256 x = both(ring.x[lane]);
+        const __m256 z = both(ring.z[lane]);
+        const __m256 lean = both(ring.lean[lane]);
+        const float r = ring.radius[lane];
+        const float l = ring.lean_length[lane];
+        const __m256 radius = both(lanes::f4{r, r, r, 0});
+        const __m256 length = both(lanes::f4{l, l, l, 0});
+        const __m256 u_lane = both(lanes::f4{-0.0f, -0.0f, -0.0f, 0});
+        const __m256 handed = both(lanes::f4{-0.0f, -0.0f, -0.0f, 1});
+        const std::size_t pairs = corners.size() / 2;
+        for (std::size_t i = 0; i < pairs; ++i) {
+            const __m256 corner = _mm256_loadu_ps(&corners[2 * i].x);
+            const __m256 cosine = _mm256_permute_ps(corner, 0x00);
+            const __m256 sine = _mm256_permute_ps(corner, 0x55);
+            const __m256 u = _mm256_blend_ps(u_lane, _mm256_permute_ps(corner, 0xaa), 0x88);
+            const __m256 outward = _mm256_sub_ps(_mm256_mul_ps(x, cosine), _mm256_mul_ps(z, sine));
+            const __m256 along = _mm256_add_ps(_mm256_mul_ps(x, sine), _mm256_mul_ps(z, cosine));
+            const __m256 position =
+                _mm256_add_ps(_mm256_add_ps(centre, _mm256_mul_ps(outward, radius)), u);
+            const __m256 normal = _mm256_sub_ps(_mm256_mul_ps(outward, length), lean);
+            const __m256 tangent = _mm256_sub_ps(handed, along);
+            _mm_stream_ps(out, _mm256_castps256_ps128(position));
+            _mm_stream_ps(out + 4, _mm256_castps256_ps128(normal));
+            _mm_stream_ps(out + 8, _mm256_castps256_ps128(tangent));
+            _mm_stream_ps(out + 12, _mm256_extractf128_ps(position, 1));
+            _mm_stream_ps(out + 16, _mm256_extractf128_ps(normal, 1));
+            _mm_stream_ps(out + 20, _mm256_extractf128_ps(tangent, 1));
+            out += 24;
+        }
+        if (corners.size() % 2 != 0) {
+            write_ring(ring, lane, out, corners.last(1));
+        }
+    }
+#    endif
 };
 
 } // namespace skybark::cpu
