@@ -104,7 +104,7 @@ class mutant_recorder {
 
     void upload(const view& to, std::span<const std::byte> in) {
         if (which_ == fault::uploads_late) {
-            late_.emplace_back(to, in);
+            late_.emplace_back(to, std::vector(in.begin(), in.end()));
         } else {
             inner_.upload(convert(to), in);
         }
@@ -302,7 +302,7 @@ class mutant_recorder {
 
     own::recorder inner_;
     fault which_;
-    std::vector<std::pair<view, std::span<const std::byte>>> late_;
+    std::vector<std::pair<view, std::vector<std::byte>>> late_;
 };
 
 result<mutant_recorder> mutant::begin() { return mutant_recorder(inner_, which_); }

@@ -136,26 +136,23 @@ PFN_vkGetDeviceProcAddr next_get = nullptr;
 PFN_vkAllocateMemory next_allocate_memory = nullptr;
 std::set<std::string> counted_names;
 
-template <int I>
-struct counting {
-    static inline PFN_vkVoidFunction next = nullptr;
+template <class Function>
+struct counting;
+template <class... Arguments>
+struct counting<VkResult(VKAPI_PTR*)(Arguments...)> {
+    static inline VkResult(VKAPI_PTR* next)(Arguments...) = nullptr;
+    static VKAPI_ATTR VkResult VKAPI_CALL call(Arguments... arguments) {
+        ++made;
+        return next(arguments...);
+    }
 };
 
-/// A function of any signature f(device, info, callbacks, out) that counts and goes on.
-template <int I>
-VKAPI_ATTR VkResult VKAPI_CALL count_and_call(VkDevice d, const void* info,
-                                              const VkAllocationCallbacks* callbacks, void* out) {
-    ++made;
-    using function =
-        VkResult(VKAPI_PTR*)(VkDevice, const void*, const VkAllocationCallbacks*, void*);
-    return reinterpret_cast<function>(counting<I>::next)(d, info, callbacks, out);
-}
-
-template <int I>
+/// Counts the calls of the device's function of that name and type.
+template <class Function>
 PFN_vkVoidFunction between(VkDevice d, const char* name) {
-    counting<I>::next = next_get(d, name);
+    counting<Function>::next = reinterpret_cast<Function>(next_get(d, name));
     counted_names.insert(name);
-    return reinterpret_cast<PFN_vkVoidFunction>(&count_and_call<I>);
+    return reinterpret_cast<PFN_vkVoidFunction>(&counting<Function>::call);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL count_sets(VkDevice d, const VkDescriptorSetAllocateInfo* info,
@@ -168,37 +165,37 @@ VKAPI_ATTR VkResult VKAPI_CALL count_sets(VkDevice d, const VkDescriptorSetAlloc
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL counting_get(VkDevice d, const char* name) {
     const std::string_view n(name);
     if (n == "vkAllocateMemory") {
-        return between<0>(d, name);
+        return between<PFN_vkAllocateMemory>(d, name);
     }
     if (n == "vkCreateBuffer") {
-        return between<1>(d, name);
+        return between<PFN_vkCreateBuffer>(d, name);
     }
     if (n == "vkCreateImage") {
-        return between<2>(d, name);
+        return between<PFN_vkCreateImage>(d, name);
     }
     if (n == "vkCreateImageView") {
-        return between<3>(d, name);
+        return between<PFN_vkCreateImageView>(d, name);
     }
     if (n == "vkCreateSampler") {
-        return between<4>(d, name);
+        return between<PFN_vkCreateSampler>(d, name);
     }
     if (n == "vkCreateDescriptorPool") {
-        return between<5>(d, name);
+        return between<PFN_vkCreateDescriptorPool>(d, name);
     }
     if (n == "vkCreateDescriptorSetLayout") {
-        return between<6>(d, name);
+        return between<PFN_vkCreateDescriptorSetLayout>(d, name);
     }
     if (n == "vkCreatePipelineLayout") {
-        return between<7>(d, name);
+        return between<PFN_vkCreatePipelineLayout>(d, name);
     }
     if (n == "vkCreateShaderModule") {
-        return between<8>(d, name);
+        return between<PFN_vkCreateShaderModule>(d, name);
     }
     if (n == "vkCreateCommandPool") {
-        return between<9>(d, name);
+        return between<PFN_vkCreateCommandPool>(d, name);
     }
     if (n == "vkCreateFence") {
-        return between<10>(d, name);
+        return between<PFN_vkCreateFence>(d, name);
     }
     if (n == "vkAllocateDescriptorSets") {
         return reinterpret_cast<PFN_vkVoidFunction>(&count_sets);
