@@ -47,7 +47,8 @@ inline constexpr double alignment_tolerance = 1e-6;
 }
 
 [[nodiscard]] inline std::string vector_text(const glm::vec3& v) {
-    return "(" + number_text(v.x) + ", " + number_text(v.y) + ", " + number_text(v.z) + ")";
+    std::string text = number_text(v.x); // "(" + a temporary makes g++ 12 see an overlap
+    return text.insert(0, 1, '(') + ", " + number_text(v.y) + ", " + number_text(v.z) + ")";
 }
 
 [[nodiscard]] inline glm::dvec3 chord(const segment& s) {
