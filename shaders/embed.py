@@ -2,6 +2,7 @@
 """Makes the checked-in headers from the texts in this folder; see README.md beside this.
 
     embed.py           write what is out of date
+    embed.py NAME...   only of these kernels and formulas
     embed.py --check   write nothing; exit 1 and name what is out of date
 
 A header carries the SHA-256 of the texts that it was made from, so --check needs no compiler.
@@ -229,7 +230,8 @@ def headers():
 
 def main():
     check = "--check" in sys.argv[1:]
-    stale = [h for h in headers() if h.stale()]
+    names = [a for a in sys.argv[1:] if not a.startswith("-")]
+    stale = [h for h in headers() if h.stale() and (not names or h.path.stem in names)]
     for header in stale:
         if not check:
             header.write()

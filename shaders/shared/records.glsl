@@ -21,3 +21,29 @@ struct branch_segment {
     uint caps;
     uint reserved;
 };
+struct segment_pose {
+    vec4 rotation;
+    vec3 base;
+    float reserved0;
+    vec3 shift;
+    float reserved1;
+};
+struct end_carrier {
+    uint moved_by;
+    uint turned_by;
+    uint and_by;
+    uint reserved;
+};
+struct leaf {
+    vec3 position;
+    float width;
+    vec4 orientation;
+    float length;
+    uint carrier;
+    uint seed;
+    float fold;
+};
+struct segment_load {
+    vec3 force;
+    float drag;
+};

@@ -1,55 +1,25 @@
 // One tree on every backend: the same mesh, where the equations say, and the same picture.
 
+#include "support/devices.hpp"
 #include "support/test_trees.hpp"
 #include "support/tree_mesh.hpp"
 
 #include <picture/tree_picture.hpp>
 #include <skybark/conformance/branch_reference.hpp>
-#include <skybark/conformance/suite.hpp>
-#include <skybark/opengl/headless.hpp>
-#include <skybark/opengl/opengl.hpp>
-#include <skybark/vulkan/headless.hpp>
-#include <skybark/vulkan/vulkan.hpp>
 
 #include <gtest/gtest.h>
 
 using namespace skybark;
 using glm::dvec3;
 using kernels::branch_frame;
+using support::open_opengl;
+using support::open_vulkan;
 using trees::branch_mesh_options;
 using trees::mesh_form;
 
 namespace reference = skybark::conformance::reference;
 
 namespace {
-
-/// A device for a test, or why there is none.
-template <class Headless, class Options>
-std::unique_ptr<Headless> open(const char* name, Options options, std::string& why) {
-    auto made = Headless::create(std::move(options));
-    if (!made) {
-        why = std::string(name) + ": " + made.error().message;
-        return nullptr;
-    }
-    return std::make_unique<Headless>(std::move(*made));
-}
-std::unique_ptr<opengl::headless> open_opengl(std::string& why) {
-    opengl::headless_options options;
-    options.kind = opengl::headless_kind::egl;
-    return open<opengl::headless>("opengl", options, why);
-}
-std::unique_ptr<vulkan::headless> open_vulkan(std::string& why) {
-    return open<vulkan::headless>("vulkan", vulkan::headless_options{}, why);
-}
-
-/// Ends the test: a visible skip, or a failure where the environment asks for the backend.
-#define SKYBARK_SKIP_WITHOUT(device, name, why)                                                    \
-    if (!(device)) {                                                                               \
-        if (conformance::is_required(name)) {                                                      \
-            FAIL() << (why);                                                                       \
-        }                                                                                          \
-        GTEST_SKIP() << (why);                                                                     \
-    }
 
 const std::vector<support::test_tree>& all_trees() {
     static const std::vector<support::test_tree> all = [] {

@@ -15,6 +15,7 @@
 #include <skybark/opengl/programs/hermite_branch.hpp>
 #include <skybark/opengl/programs/lit_branch.hpp>
 #include <skybark/opengl/programs/meadow_ground.hpp>
+#include <skybark/opengl/programs/pose_ends.hpp>
 #include <skybark/opengl/programs/probe_image.hpp>
 #include <skybark/opengl/programs/probe_level.hpp>
 #include <skybark/opengl/programs/probe_map.hpp>

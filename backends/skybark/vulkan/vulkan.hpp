@@ -11,6 +11,7 @@
 #include <skybark/vulkan/programs/hermite_branch.hpp>
 #include <skybark/vulkan/programs/lit_branch.hpp>
 #include <skybark/vulkan/programs/meadow_ground.hpp>
+#include <skybark/vulkan/programs/pose_ends.hpp>
 #include <skybark/vulkan/programs/probe_image.hpp>
 #include <skybark/vulkan/programs/probe_level.hpp>
 #include <skybark/vulkan/programs/probe_map.hpp>

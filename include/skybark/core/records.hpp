@@ -69,4 +69,47 @@ static_assert(sizeof(branch_segment) == 16);
 inline constexpr std::uint32_t cap_start = 1;
 inline constexpr std::uint32_t cap_end = 2;
 
+/// Where a segment of the skeleton is now, against its rest. What it carries moves from x to
+/// x + shift + (rotation · y − y) with y = x − base: exactly x where nothing has moved.
+struct segment_pose {
+    glm::vec4 rotation{0, 0, 0, 1}; ///< unit quaternion x, y, z, w: from rest to now, in the world
+    glm::vec3 base{0};              ///< m, the base of the segment at rest
+    float reserved0 = 0;
+    glm::vec3 shift{0}; ///< m, how far the base has moved
+    float reserved1 = 0;
+};
+static_assert(sizeof(segment_pose) == 48);
+static_assert(offsetof(segment_pose, base) == 16 && offsetof(segment_pose, shift) == 32);
+
+/// Which segments move and turn a branch_end. At a joint the ring lies half way between the two.
+struct end_carrier {
+    std::uint32_t moved_by = 0;  ///< index of a segment_pose
+    std::uint32_t turned_by = 0; ///< index of a segment_pose: half of the turn is its …
+    std::uint32_t and_by = 0;    ///< … and half this one's; the same at a free end
+    std::uint32_t reserved = 0;
+};
+static_assert(sizeof(end_carrier) == 16);
+
+/// A leaf at rest (Akagi and Kitajima, 3.2 and 3.4), and which segment carries it.
+struct leaf {
+    glm::vec3 position{0};             ///< m, where its stalk begins
+    float width = 0;                   ///< m, of both halves together
+    glm::vec4 orientation{0, 0, 0, 1}; ///< unit quaternion: +Y to the tip, +Z off the upper face
+    float length = 0;                  ///< m
+    std::uint32_t carrier = 0;         ///< index of a segment_pose
+    std::uint32_t seed = 0;            ///< random bits of its own: flutter, level of detail
+    float fold = 0;                    ///< rad, how far each half is folded up about the midrib
+};
+static_assert(sizeof(leaf) == 48);
+static_assert(offsetof(leaf, width) == 12 && offsetof(leaf, orientation) == 16 &&
+              offsetof(leaf, length) == 32 && offsetof(leaf, seed) == 40);
+
+/// What the wind does to a segment that carries leaves: a force at its middle, and how that force
+/// falls as the segment yields, which damps it.
+struct segment_load {
+    glm::vec3 force{0}; ///< N, on the segment if it stood still
+    float drag = 0;     ///< kg/s ≥ 0: the force falls by `drag` · the velocity of the middle
+};
+static_assert(sizeof(segment_load) == 16);
+
 } // namespace skybark

@@ -20,6 +20,7 @@ namespace skybark::trees {
 struct branch_layout {
     std::vector<branch_end> ends;
     std::vector<branch_segment> segments; ///< one a segment of the skeleton, in its order
+    std::vector<end_carrier> carriers;    ///< one an end; segments of the skeleton move it
 };
 
 namespace detail {
@@ -45,6 +46,7 @@ class branch_layout_builder {
         : from_(from), frames_(frame) {
         layout_.segments.resize(from.size());
         layout_.ends.reserve(from.size() + from.size() / 4 + 1);
+        layout_.carriers.reserve(from.size() + from.size() / 4 + 1);
         frame_.resize(from.size());
         chord_.resize(from.size());
     }
@@ -83,6 +85,7 @@ class branch_layout_builder {
         // The joint's ring lies half way between the two segments.
         layout_.ends[joint].orientation =
             shared::slerp(as_vec4(frame_[p]), as_vec4(frame_[i]), 0.5f);
+        layout_.carriers[joint] = {p, p, i};
     }
 
     void start_chain(std::uint32_t i) {
@@ -93,8 +96,7 @@ class branch_layout_builder {
         if (p != none) {
             start_inside(start, p);
         }
-        layout_.ends.push_back(start);
-        const auto index = static_cast<std::uint32_t>(layout_.ends.size() - 1);
+        const std::uint32_t index = add_end(start, {i, i, i});
         finish(i, index, from_.orientation[i]);
         layout_.ends[index].orientation = as_vec4(frame_[i]);
         layout_.segments[i].caps |= cap_start;
@@ -134,9 +136,13 @@ class branch_layout_builder {
         frame_[i] = length > 0 ? glm::normalize(shortest_rotation(up, chord_[i] / length) * before)
                                : before;
         end.orientation = as_vec4(frame_[i]);
+        layout_.segments[i] = {start, add_end(end, {i, i, i}), cap_end, 0};
+    }
+
+    std::uint32_t add_end(const branch_end& end, const end_carrier& carrier) {
         layout_.ends.push_back(end);
-        layout_.segments[i] = {start, static_cast<std::uint32_t>(layout_.ends.size() - 1), cap_end,
-                               0};
+        layout_.carriers.push_back(carrier);
+        return static_cast<std::uint32_t>(layout_.ends.size() - 1);
     }
 
     /// Whether a chord is no more than what floats near `place` leave of one without length. Its
@@ -232,12 +238,16 @@ class branch_layout_builder {
         branch_segment& segment = layout_.segments[i];
         const std::uint32_t p = from_.parent[i];
         if (p != none && layout_.segments[p].end == segment.start) {
+            layout_.carriers[segment.start] = {p, p, p};
             segment.start = copy_of_end(segment.start);
+            layout_.carriers[segment.start] = {p, i, i};
             layout_.segments[p].caps |= cap_end;
         }
         const std::uint32_t next = from_.continuation[i];
         if (next != none && layout_.segments[next].start == segment.end) {
             const std::uint32_t start = copy_of_end(segment.end);
+            layout_.carriers[segment.end] = {i, i, i};
+            layout_.carriers[start] = {i, next, next};
             layout_.segments[next].start = start;
             layout_.segments[next].caps |= cap_start;
             layout_.ends[start].orientation = as_vec4(frame_[next]);
@@ -249,8 +259,7 @@ class branch_layout_builder {
 
     [[nodiscard]] std::uint32_t copy_of_end(std::uint32_t end) {
         const branch_end copy = layout_.ends[end];
-        layout_.ends.push_back(copy);
-        return static_cast<std::uint32_t>(layout_.ends.size() - 1);
+        return add_end(copy, layout_.carriers[end]);
     }
 
     /// The change of radius along the growth at each end: the mean of the segments that meet there.

@@ -5,16 +5,19 @@
 //     auto mesh = trees::branch_mesh<B>::create(device, skeleton, {});
 //     run(device, [&](auto& recorder) { mesh->record(recorder); });
 //
-// The device is sent the ends and segments of the skeleton once. `record` makes all vertices anew.
+// The device is sent the ends and segments of the skeleton once. `record` makes all vertices anew,
+// at rest or where the poses of the segments (trees/sway.hpp) have carried them.
 // A scene that does not fit the device's largest buffer is cut into chunks of whole segments.
 
 #include <skybark/core/backend.hpp>
 #include <skybark/kernels/branch_cap.hpp>
 #include <skybark/kernels/hermite_branch.hpp>
+#include <skybark/kernels/pose_ends.hpp>
 #include <skybark/kernels/ring_indices.hpp>
 #include <skybark/kernels/unit_polygon.hpp>
 #include <skybark/trees/branch_layout.hpp>
 
+#include <cassert>
 #include <unordered_map>
 
 namespace skybark::trees {
@@ -41,8 +44,9 @@ struct host_mesh {
 
 /// The branches of a skeleton as triangles in buffers of backend B.
 template <backend B>
-requires maps<B, kernels::ring_indices> && expands_rings<B, kernels::hermite_branch> &&
-    expands_rings<B, kernels::branch_cap> && expands<B, kernels::hermite_branch>
+requires maps<B, kernels::ring_indices> && maps<B, kernels::pose_ends> &&
+    expands_rings<B, kernels::hermite_branch> && expands_rings<B, kernels::branch_cap> &&
+    expands<B, kernels::hermite_branch>
 class branch_mesh {
   public:
     using buffer = typename B::buffer;
@@ -51,9 +55,12 @@ class branch_mesh {
     /// Part of the mesh, small enough to be one draw.
     struct part {
         buffer segments; ///< branch_segment (tubes) or uint32 (caps)
-        buffer ends;     ///< branch_end
+        buffer ends;     ///< branch_end: where they are in this frame
+        buffer rest;     ///< branch_end: where they are at rest
+        buffer carriers; ///< end_carrier; empty where the layout has none
         buffer vertices; ///< surface_vertex; room for what `record` makes
         buffer count;    ///< one count_record, of the list form
+        std::uint32_t end_count = 0;
         std::uint32_t elements = 0;
         std::uint32_t vertex_count = 0;
         std::uint32_t triangles = 0;
@@ -83,19 +90,19 @@ class branch_mesh {
         return mesh;
     }
 
-    /// Appends the making of all vertices. Allocates nothing.
-    void record(recorder& to) const {
+    /// Appends the making of all vertices at rest. Allocates nothing.
+    void record(recorder& to) const { record_vertices(to, &part::rest); }
+
+    /// Appends the making of all vertices where `poses`, one segment_pose for each segment of the
+    /// skeleton, carry them. The layout must have carriers. Allocates nothing.
+    void record(recorder& to, const buffer_view<B>& poses) const {
         for (const part& p : parts_) {
-            if (p.caps) {
-                to.expand_rings(cap_, {view<B>(p.segments), view<B>(p.ends), view<B>(*corners_)},
-                                range{0, p.elements}, view<B>(p.vertices));
-            } else if (options_.form == mesh_form::rings) {
-                to.expand_rings(tube_, tube_bindings(p), range{0, p.elements}, view<B>(p.vertices));
-            } else {
-                to.expand(tube_, tube_bindings(p), range{0, p.elements},
-                          triangle_list<B>{view<B>(p.vertices), view<B>(p.count), options_.policy});
-            }
+            assert(p.carriers.size_bytes() != 0 || p.end_count == 0);
+            to.map(kernels::pose_ends{},
+                   {view<B>(p.rest), view<B>(p.carriers), poses, view<B>(p.ends)},
+                   range{0, p.end_count});
         }
+        record_vertices(to, &part::ends);
     }
 
     /// What to draw: a kernel's vertices are `part.vertices`.
@@ -147,6 +154,21 @@ class branch_mesh {
   private:
     branch_mesh() = default;
 
+    void record_vertices(recorder& to, buffer part::*ends) const {
+        for (const part& p : parts_) {
+            const bindings<B, kernels::hermite_branch> from = {
+                view<B>(p.segments), view<B>(p.*ends), view<B>(*corners_)};
+            if (p.caps) {
+                to.expand_rings(cap_, from, range{0, p.elements}, view<B>(p.vertices));
+            } else if (options_.form == mesh_form::rings) {
+                to.expand_rings(tube_, from, range{0, p.elements}, view<B>(p.vertices));
+            } else {
+                to.expand(tube_, from, range{0, p.elements},
+                          triangle_list<B>{view<B>(p.vertices), view<B>(p.count), options_.policy});
+            }
+        }
+    }
+
     [[nodiscard]] static result<void> check(const branch_mesh_options& options) {
         const auto out_of_range = [](const char* what, std::uint32_t value, std::uint32_t least) {
             return fail(error_code::bad_input,
@@ -160,10 +182,6 @@ class branch_mesh {
             return out_of_range("rings", options.rings, 2);
         }
         return {};
-    }
-
-    [[nodiscard]] bindings<B, kernels::hermite_branch> tube_bindings(const part& p) const {
-        return {view<B>(p.segments), view<B>(p.ends), view<B>(*corners_)};
     }
 
     [[nodiscard]] std::uint64_t total(std::uint32_t part::*of) const {
@@ -312,10 +330,14 @@ class branch_mesh {
             const auto [place, added] = number_.try_emplace(end, next);
             if (added) {
                 ends.push_back(layout_.ends[end]);
+                if (!layout_.carriers.empty()) {
+                    carriers.push_back(layout_.carriers[end]);
+                }
             }
             return place->second;
         }
         std::vector<branch_end> ends;
+        std::vector<end_carrier> carriers;
 
       private:
         const branch_layout& layout_;
@@ -326,7 +348,8 @@ class branch_mesh {
                                          std::uint64_t first, std::uint64_t count,
                                          std::uint64_t vertex_bytes) {
         if (count == layout.segments.size()) {
-            return add_part<branch_segment>(device, layout.segments, layout.ends, vertex_bytes);
+            return add_part<branch_segment>(device, layout.segments, layout.ends, layout.carriers,
+                                            vertex_bytes);
         }
         local_ends local(layout);
         std::vector<branch_segment> segments(
@@ -336,7 +359,7 @@ class branch_mesh {
             s.start = local(s.start);
             s.end = local(s.end);
         }
-        return add_part<branch_segment>(device, segments, local.ends, vertex_bytes);
+        return add_part<branch_segment>(device, segments, local.ends, local.carriers, vertex_bytes);
     }
 
     [[nodiscard]] result<void> add_caps(B& device, const branch_layout& layout,
@@ -348,7 +371,7 @@ class branch_mesh {
             numbered.push_back(2 * local(cap / 2) + cap % 2);
         }
         const std::uint64_t vertices = std::uint64_t{options_.sides} * caps.size();
-        auto added = add_part<std::uint32_t>(device, numbered, local.ends,
+        auto added = add_part<std::uint32_t>(device, numbered, local.ends, local.carriers,
                                              vertices * sizeof(surface_vertex));
         if (added) {
             parts_.back().caps = true;
@@ -360,27 +383,23 @@ class branch_mesh {
     }
 
     template <class Element>
-    [[nodiscard]] result<void> add_part(B& device, std::span<const Element> elements,
-                                        std::span<const branch_end> ends,
-                                        std::uint64_t vertex_bytes) {
-        auto segment_buffer = make_buffer<B, Element>(device, elements);
-        if (!segment_buffer) {
-            return failure(segment_buffer.error());
+    [[nodiscard]] result<void>
+    add_part(B& device, std::span<const Element> elements, std::span<const branch_end> ends,
+             std::span<const end_carrier> carriers, std::uint64_t vertex_bytes) {
+        result<buffer> made[] = {make_buffer<B, Element>(device, elements),
+                                 make_buffer<B, branch_end>(device, ends),
+                                 make_buffer<B, branch_end>(device, ends),
+                                 make_buffer<B, end_carrier>(device, carriers),
+                                 device.create_buffer(vertex_bytes),
+                                 device.create_buffer(sizeof(count_record))};
+        for (const result<buffer>& each : made) {
+            if (!each) {
+                return failure(each.error());
+            }
         }
-        auto end_buffer = make_buffer<B, branch_end>(device, ends);
-        if (!end_buffer) {
-            return failure(end_buffer.error());
-        }
-        auto vertex_buffer = device.create_buffer(vertex_bytes);
-        if (!vertex_buffer) {
-            return failure(vertex_buffer.error());
-        }
-        auto count_buffer = device.create_buffer(sizeof(count_record));
-        if (!count_buffer) {
-            return failure(count_buffer.error());
-        }
-        parts_.push_back({std::move(*segment_buffer), std::move(*end_buffer),
-                          std::move(*vertex_buffer), std::move(*count_buffer),
+        parts_.push_back({std::move(*made[0]), std::move(*made[1]), std::move(*made[2]),
+                          std::move(*made[3]), std::move(*made[4]), std::move(*made[5]),
+                          static_cast<std::uint32_t>(ends.size()),
                           static_cast<std::uint32_t>(elements.size()), 0, 0, false});
         return {};
     }

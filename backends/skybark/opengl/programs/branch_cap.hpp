@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 94bc374424936c384d17c148ab4a9a6a73f323991eb273975f38d1c0245737db
+// sha256 4852c9f2be48e2cf2e03ba674bb71b4421eeff06abca0ab74104319c0020aaac
 #pragma once
 
 #include <skybark/kernels/branch_cap.hpp>
@@ -69,6 +69,32 @@ struct branch_segment {
     uint end;
     uint caps;
     uint reserved;
+};
+struct segment_pose {
+    vec4 rotation;
+    vec3 base;
+    float reserved0;
+    vec3 shift;
+    float reserved1;
+};
+struct end_carrier {
+    uint moved_by;
+    uint turned_by;
+    uint and_by;
+    uint reserved;
+};
+struct leaf {
+    vec3 position;
+    float width;
+    vec4 orientation;
+    float length;
+    uint carrier;
+    uint seed;
+    float fold;
+};
+struct segment_load {
+    vec3 force;
+    float drag;
 };
 vec3 quaternion_x(vec4 q) {
     return vec3(1.0f - 2.0f * (q.y * q.y + q.z * q.z), 2.0f * (q.x * q.y + q.w * q.z),

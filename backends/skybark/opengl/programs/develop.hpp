@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c01f51fb3d97b43406a237ba06e37bf9c5d469eb6c2728b6f115f6b9ffb4b7c8
+// sha256 dbf5cfa4f280fe34d0e6c9cc6a3391250621c482f8d02189cb6174daadd9f07f
 #pragma once
 
 #include <skybark/kernels/develop.hpp>
@@ -65,6 +65,32 @@ struct branch_segment {
     uint end;
     uint caps;
     uint reserved;
+};
+struct segment_pose {
+    vec4 rotation;
+    vec3 base;
+    float reserved0;
+    vec3 shift;
+    float reserved1;
+};
+struct end_carrier {
+    uint moved_by;
+    uint turned_by;
+    uint and_by;
+    uint reserved;
+};
+struct leaf {
+    vec3 position;
+    float width;
+    vec4 orientation;
+    float length;
+    uint carrier;
+    uint seed;
+    float fold;
+};
+struct segment_load {
+    vec3 force;
+    float drag;
 };
 struct daylight_sky {
     vec4 a; // Perez' coefficients: x for Y, y for x, z for y
@@ -261,6 +287,32 @@ struct branch_segment {
     uint end;
     uint caps;
     uint reserved;
+};
+struct segment_pose {
+    vec4 rotation;
+    vec3 base;
+    float reserved0;
+    vec3 shift;
+    float reserved1;
+};
+struct end_carrier {
+    uint moved_by;
+    uint turned_by;
+    uint and_by;
+    uint reserved;
+};
+struct leaf {
+    vec3 position;
+    float width;
+    vec4 orientation;
+    float length;
+    uint carrier;
+    uint seed;
+    float fold;
+};
+struct segment_load {
+    vec3 force;
+    float drag;
 };
 struct daylight_sky {
     vec4 a; // Perez' coefficients: x for Y, y for x, z for y

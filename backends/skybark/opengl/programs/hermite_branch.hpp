@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 16f6b3b684acb39e3f572bbd6e4a03e78a8a503f91ed3c92873a13ed751d4e21
+// sha256 4161851c68be510776779427308ec8a40b446392f2fdeee7f25b6345bcdd047b
 #pragma once
 
 #include <skybark/kernels/hermite_branch.hpp>
@@ -69,6 +69,32 @@ struct branch_segment {
     uint end;
     uint caps;
     uint reserved;
+};
+struct segment_pose {
+    vec4 rotation;
+    vec3 base;
+    float reserved0;
+    vec3 shift;
+    float reserved1;
+};
+struct end_carrier {
+    uint moved_by;
+    uint turned_by;
+    uint and_by;
+    uint reserved;
+};
+struct leaf {
+    vec3 position;
+    float width;
+    vec4 orientation;
+    float length;
+    uint carrier;
+    uint seed;
+    float fold;
+};
+struct segment_load {
+    vec3 force;
+    float drag;
 };
 vec3 quaternion_x(vec4 q) {
     return vec3(1.0f - 2.0f * (q.y * q.y + q.z * q.z), 2.0f * (q.x * q.y + q.w * q.z),
@@ -445,6 +471,32 @@ struct branch_segment {
     uint end;
     uint caps;
     uint reserved;
+};
+struct segment_pose {
+    vec4 rotation;
+    vec3 base;
+    float reserved0;
+    vec3 shift;
+    float reserved1;
+};
+struct end_carrier {
+    uint moved_by;
+    uint turned_by;
+    uint and_by;
+    uint reserved;
+};
+struct leaf {
+    vec3 position;
+    float width;
+    vec4 orientation;
+    float length;
+    uint carrier;
+    uint seed;
+    float fold;
+};
+struct segment_load {
+    vec3 force;
+    float drag;
 };
 vec3 quaternion_x(vec4 q) {
     return vec3(1.0f - 2.0f * (q.y * q.y + q.z * q.z), 2.0f * (q.x * q.y + q.w * q.z),

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 83e584daf668dfa4ae37bcda507508ce2596a1dd8a84c8de9186cfd951e2f748
+// sha256 afc32b2c9af17a3db92f2d4643afa304790d7a8951f0901d7841c4bd0c123c26
 #pragma once
 
 #include <skybark/kernels/lit_branch.hpp>
@@ -65,6 +65,32 @@ struct branch_segment {
     uint end;
     uint caps;
     uint reserved;
+};
+struct segment_pose {
+    vec4 rotation;
+    vec3 base;
+    float reserved0;
+    vec3 shift;
+    float reserved1;
+};
+struct end_carrier {
+    uint moved_by;
+    uint turned_by;
+    uint and_by;
+    uint reserved;
+};
+struct leaf {
+    vec3 position;
+    float width;
+    vec4 orientation;
+    float length;
+    uint carrier;
+    uint seed;
+    float fold;
+};
+struct segment_load {
+    vec3 force;
+    float drag;
 };
 struct daylight_sky {
     vec4 a; // Perez' coefficients: x for Y, y for x, z for y
@@ -308,6 +334,32 @@ struct branch_segment {
     uint end;
     uint caps;
     uint reserved;
+};
+struct segment_pose {
+    vec4 rotation;
+    vec3 base;
+    float reserved0;
+    vec3 shift;
+    float reserved1;
+};
+struct end_carrier {
+    uint moved_by;
+    uint turned_by;
+    uint and_by;
+    uint reserved;
+};
+struct leaf {
+    vec3 position;
+    float width;
+    vec4 orientation;
+    float length;
+    uint carrier;
+    uint seed;
+    float fold;
+};
+struct segment_load {
+    vec3 force;
+    float drag;
 };
 struct daylight_sky {
     vec4 a; // Perez' coefficients: x for Y, y for x, z for y

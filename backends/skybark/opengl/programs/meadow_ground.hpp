@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 cd919167ef9f76071d1e557d76c3a3882f1740b92d1f667a1447b53b57f594e3
+// sha256 ded1309920a6db38cdc7c0d4d38cc5a1382415c596e64a6ae75d8890ea6965c2
 #pragma once
 
 #include <skybark/kernels/meadow_ground.hpp>
@@ -65,6 +65,32 @@ struct branch_segment {
     uint end;
     uint caps;
     uint reserved;
+};
+struct segment_pose {
+    vec4 rotation;
+    vec3 base;
+    float reserved0;
+    vec3 shift;
+    float reserved1;
+};
+struct end_carrier {
+    uint moved_by;
+    uint turned_by;
+    uint and_by;
+    uint reserved;
+};
+struct leaf {
+    vec3 position;
+    float width;
+    vec4 orientation;
+    float length;
+    uint carrier;
+    uint seed;
+    float fold;
+};
+struct segment_load {
+    vec3 force;
+    float drag;
 };
 struct daylight_sky {
     vec4 a; // Perez' coefficients: x for Y, y for x, z for y
@@ -298,6 +324,32 @@ struct branch_segment {
     uint end;
     uint caps;
     uint reserved;
+};
+struct segment_pose {
+    vec4 rotation;
+    vec3 base;
+    float reserved0;
+    vec3 shift;
+    float reserved1;
+};
+struct end_carrier {
+    uint moved_by;
+    uint turned_by;
+    uint and_by;
+    uint reserved;
+};
+struct leaf {
+    vec3 position;
+    float width;
+    vec4 orientation;
+    float length;
+    uint carrier;
+    uint seed;
+    float fold;
+};
+struct segment_load {
+    vec3 force;
+    float drag;
 };
 struct daylight_sky {
     vec4 a; // Perez' coefficients: x for Y, y for x, z for y

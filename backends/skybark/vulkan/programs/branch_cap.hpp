@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c7e41bc51f7808f232e71db47ae3db085b3bf6b3987c4ff1dfd56cd3036feb6e
+// sha256 fa858f16e960b9c74c41c1bc2250973b0082ed711c55ff9ecc61cd10b4babfe1
 #pragma once
 
 #include <skybark/kernels/branch_cap.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 7fabf8b7a7e8975c02195255d7bb20b168e06f20dd1a92f297d6fdece6f46bc5
+// sha256 5b19f14f8e051dae9b664e07c73befc8327d9b4b57f6f6530af0f3d603bb8c8d
 #pragma once
 
 #include <skybark/kernels/cast_shadow.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0cba5be26c95f56c5447eae62962ab61004222a20e8529fbcb341d3031dfa11e
+// sha256 82b64d37506c13d6c449cff9b151c2580a0e3293b268942c63083e4ef3123c32
 #pragma once
 
 #include <skybark/kernels/clear_sky.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f0d9c290f77878747828c41517455a21a3dc617527753bde349fea78798960c6
+// sha256 8130996effef14a9314bed4221b3497b17737693907efa89b0c2ff644d39bf6b
 #pragma once
 
 #include <skybark/kernels/develop.hpp>

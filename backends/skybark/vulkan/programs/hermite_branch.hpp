@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 685930a7bfe84dc4c2734cef4dac1dd16b7ce221d8c482dc81d3c823b3e2c363
+// sha256 1d49caaeeaff89025c4cee849f2af8040fbb06456f16c2005f0a5c17ce0c48aa
 #pragma once
 
 #include <skybark/kernels/hermite_branch.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5b3eef79c0eb2d4942e65642b1210d861ef68779873a753b6f10ef06fbeebd93
+// sha256 3b8da103a1793f4843fdb2412b1a8858737a3bbfb8d2b5f0fd2e4dac227b487b
 #pragma once
 
 #include <skybark/kernels/lit_branch.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 da39eebcb45d03b2a90fa2c014d86f16b7744368c9ab84569b35222a6246f1b8
+// sha256 04bd8a4a1aec64253cdc76369bd20345636a163afe3d76109a822cf1156508d1
 #pragma once
 
 #include <skybark/kernels/meadow_ground.hpp>
