@@ -12,6 +12,7 @@
 #include <skybark/opengl/programs/cast_shadow.hpp>
 #include <skybark/opengl/programs/clear_sky.hpp>
 #include <skybark/opengl/programs/develop.hpp>
+#include <skybark/opengl/programs/grid_wind.hpp>
 #include <skybark/opengl/programs/hermite_branch.hpp>
 #include <skybark/opengl/programs/lit_branch.hpp>
 #include <skybark/opengl/programs/meadow_ground.hpp>
@@ -23,3 +24,5 @@
 #include <skybark/opengl/programs/probe_strips.hpp>
 #include <skybark/opengl/programs/probe_surface.hpp>
 #include <skybark/opengl/programs/ring_indices.hpp>
+#include <skybark/opengl/programs/wave_wind.hpp>
+#include <skybark/opengl/programs/wind_load.hpp>

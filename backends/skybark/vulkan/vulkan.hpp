@@ -8,6 +8,7 @@
 #include <skybark/vulkan/programs/cast_shadow.hpp>
 #include <skybark/vulkan/programs/clear_sky.hpp>
 #include <skybark/vulkan/programs/develop.hpp>
+#include <skybark/vulkan/programs/grid_wind.hpp>
 #include <skybark/vulkan/programs/hermite_branch.hpp>
 #include <skybark/vulkan/programs/lit_branch.hpp>
 #include <skybark/vulkan/programs/meadow_ground.hpp>
@@ -19,3 +20,5 @@
 #include <skybark/vulkan/programs/probe_strips.hpp>
 #include <skybark/vulkan/programs/probe_surface.hpp>
 #include <skybark/vulkan/programs/ring_indices.hpp>
+#include <skybark/vulkan/programs/wave_wind.hpp>
+#include <skybark/vulkan/programs/wind_load.hpp>
