@@ -1,0 +1,647 @@
+#pragma once
+// Bark on the triangles that a mesh left in device memory: large ones are split at their edges'
+// midpoints, which a height map moves, until every edge is under a threshold; small ones pass.
+// Source: Akagi and Kitajima, sections 2.3 and 3.3 (the second stage, GS2).
+//
+//     auto mesh = trees::branch_mesh<B>::create(device, skeleton, {});
+//     run(device, [&](auto& recorder) { mesh->record(recorder); });
+//     auto bark = trees::bark_mesh<B>::create(device, *mesh, {}, trees::furrowed_bark(1));
+//     run(device, [&](auto& recorder) { mesh->record(recorder); bark->record(recorder, *mesh); });
+//
+// Most triangles of a tree are twigs far below the threshold. Those stay where they are, in the
+// mesh's own vertices, under an index buffer of their own; only the others become a list. Counts
+// stay on the device. The list's room has a reserve; `update` gives more where it was too little.
+
+#include <skybark/core/backend.hpp>
+#include <skybark/kernels/bark.hpp>
+#include <skybark/trees/bark_texture.hpp>
+#include <skybark/trees/branch_mesh.hpp>
+
+#include <glm/geometric.hpp>
+
+namespace skybark::trees {
+
+struct bark_options {
+    float threshold = 0.03f;          ///< m; longer edges are split
+    float relief = 0.025f;            ///< m, from the map's height 0 to its height 1
+    std::uint32_t repeats_around = 2; ///< of the map, once around a branch
+    float repeats_per_metre = 1.4f;   ///< of the map, along a branch
+    float steepest = 0.2f;            ///< a midpoint rises by at most this much of its edge
+    float rounding = 1; ///< 1: midpoints on the curve that the normals ask for; 0: on the chord
+    std::uint32_t most_passes = 6;     ///< each halves the edges; 1 … 12
+    padding policy = padding::compact; ///< degenerate: room for four times as many in each pass
+    float stretch = 1.25f; ///< ≥ 1; edges that this makes longer than the threshold may be split
+    float reserve = 0.25f; ///< of the lists' room, for sway
+};
+
+/// The bark of a mesh with `parts()`, each with its `vertices` (a buffer of surface_vertex), and
+/// `geometry(part)`, such as branch_mesh. Parts that say `caps` pass as they are: these flat caps
+/// share no normals with the tubes that they close.
+template <backend B>
+requires expands<B, kernels::bark>
+class bark_mesh {
+  public:
+    using buffer = typename B::buffer;
+    using recorder = typename B::recorder;
+
+    /// A list of refined triangles, from part of one of the mesh's parts.
+    struct part {
+        std::uint32_t of = 0;    ///< which of the mesh's parts
+        std::uint32_t first = 0; ///< triangle of that part, where it has no indices of its own
+        std::uint32_t elements = 0;
+        std::optional<buffer> indices;    ///< of the triangles to refine
+        std::optional<buffer> vertices;   ///< surface_vertex, three a triangle; there after create
+        std::vector<buffer> counts;       ///< a count_record for each pass
+        std::vector<std::uint32_t> rooms; ///< triangles, after each pass
+    };
+
+    /// Triangles that stay as they are in the mesh's own vertices.
+    struct plain_part {
+        std::uint32_t of = 0;          ///< which of the mesh's parts
+        std::optional<buffer> indices; ///< of these triangles; none: all that the part has
+        std::uint32_t triangles = 0;
+    };
+
+    /// Sorts out what is to be refined and makes room. The mesh's vertices must have been made; as
+    /// they are now they decide which triangles may ever be refined (edges longer than threshold /
+    /// stretch), how many passes there are, and how much room.
+    /// Errors: bad_input where the options are out of range or the texture has no texels, another
+    /// number of heights than its size says, or heights that are not numbers; whatever the device
+    /// says of memory.
+    template <class Mesh>
+    [[nodiscard]] static result<bark_mesh>
+    create(B& device, const Mesh& mesh, const bark_options& options, const bark_texture& texture) {
+        if (auto valid = check(options); !valid) {
+            return failure(valid.error());
+        }
+        if (auto valid = check(texture); !valid) {
+            return failure(valid.error());
+        }
+        bark_mesh made(options, texture);
+        if (auto done = made.build(device, mesh, texture); !done) {
+            return failure(done.error());
+        }
+        return made;
+    }
+
+    /// Appends all passes; the mesh's own record comes before. Allocates nothing.
+    template <class Mesh>
+    void record(recorder& to, const Mesh& mesh) const {
+        for (const part& p : parts_) {
+            for (std::uint32_t pass = 0; pass < p.rooms.size(); ++pass) {
+                const bool last = pass + 1 == p.rooms.size();
+                const buffer_view<B> list = view<B, surface_vertex>(
+                    last ? *p.vertices : *scratch_[pass % 2], 0, std::uint64_t{3} * p.rooms[pass]);
+                const triangle_list<B> out{list, view<B>(p.counts[pass]), options_.policy};
+                if (pass == 0) {
+                    record_first(to, mesh, p, kernel_, out);
+                } else {
+                    to.expand(kernel_, later_bindings(*scratch_[(pass - 1) % 2]),
+                              counted<B>{view<B>(p.counts[pass - 1]), p.rooms[pass - 1]}, out);
+                }
+            }
+        }
+    }
+
+    /// Reads how many triangles the last frame's lists wanted and makes more room, for the next
+    /// frame, where there was too little. True if there was.
+    template <class Mesh>
+    [[nodiscard]] result<bool> update(B& device, const Mesh& mesh) {
+        std::vector<part> before = std::move(parts_);
+        parts_.clear();
+        bool grown = false;
+        for (part& p : before) {
+            const result<bool> full = was_short(device, p);
+            if (!full) {
+                return failure(full.error());
+            }
+            if (!*full) {
+                parts_.push_back(std::move(p));
+                continue;
+            }
+            grown = true;
+            if (auto done = fit(device, mesh, std::move(p)); !done) {
+                return failure(done.error());
+            }
+        }
+        return grown;
+    }
+
+    [[nodiscard]] std::span<const part> parts() const { return parts_; }
+    [[nodiscard]] std::span<const plain_part> plain_parts() const { return plain_; }
+    [[nodiscard]] const bark_options& options() const { return options_; }
+    [[nodiscard]] const kernels::bark& kernel() const { return kernel_; }
+
+    [[nodiscard]] draw_geometry<B> geometry(const part& p) const {
+        draw_geometry<B> list;
+        list.count = 3 * p.rooms.back();
+        list.length = view<B>(p.counts.back());
+        return list;
+    }
+    template <class Mesh>
+    [[nodiscard]] draw_geometry<B> geometry(const Mesh& mesh, const plain_part& p) const {
+        draw_geometry<B> own = mesh.geometry(mesh.parts()[p.of]);
+        if (p.indices) {
+            own.indices = view<B>(*p.indices);
+            own.first = 0;
+            own.count = 3 * p.triangles;
+        }
+        return own;
+    }
+
+    /// Calls `draw(vertices, geometry)` for everything that the tree's surface now is: a view of
+    /// surface_vertex, and which of them.
+    template <class Mesh, class Draw>
+    void for_each_draw(const Mesh& mesh, Draw&& draw) const {
+        for (const part& p : parts_) {
+            draw(view<B>(*p.vertices), geometry(p));
+        }
+        for (const plain_part& p : plain_) {
+            draw(view<B>(mesh.parts()[p.of].vertices), geometry(mesh, p));
+        }
+    }
+
+    /// How many triangles the lists have and how many they wanted, summed; plain ones apart.
+    struct list_count {
+        std::uint64_t written = 0;
+        std::uint64_t required = 0;
+    };
+    [[nodiscard]] result<list_count> count(B& device) const {
+        list_count sum;
+        for (const part& p : parts_) {
+            const auto made = read_count(device, p.counts.back());
+            if (!made) {
+                return failure(made.error());
+            }
+            sum.written += made->written;
+            sum.required += made->required;
+        }
+        return sum;
+    }
+
+    /// The whole surface: the lists' triangles, then the plain ones.
+    template <class Mesh>
+    [[nodiscard]] result<host_mesh> download(B& device, const Mesh& mesh) const {
+        host_mesh all;
+        for (const part& p : parts_) {
+            const auto made = read_count(device, p.counts.back());
+            if (!made) {
+                return failure(made.error());
+            }
+            const auto first = static_cast<std::uint32_t>(all.vertices.size());
+            const std::uint32_t count = 3 * made->written;
+            if (auto done = append_vertices(device, *p.vertices, count, all); !done) {
+                return failure(done.error());
+            }
+            for (std::uint32_t i = 0; i < count; ++i) {
+                all.indices.push_back(first + i);
+            }
+        }
+        for (const plain_part& p : plain_) {
+            const auto first = static_cast<std::uint32_t>(all.vertices.size());
+            const buffer& vertices = mesh.parts()[p.of].vertices;
+            const std::uint64_t count = vertices.size_bytes() / sizeof(surface_vertex);
+            if (auto done = append_vertices(device, vertices, count, all); !done) {
+                return failure(done.error());
+            }
+            const auto indices = indices_of(device, geometry(mesh, p));
+            if (!indices) {
+                return failure(indices.error());
+            }
+            for (const std::uint32_t index : *indices) {
+                all.indices.push_back(first + index);
+            }
+        }
+        return all;
+    }
+
+  private:
+    bark_mesh(const bark_options& options, const bark_texture& texture) : options_(options) {
+        kernel_.width = texture.width;
+        kernel_.height = texture.height;
+        kernel_.repeats_around = static_cast<float>(options.repeats_around);
+        kernel_.repeats_along = options.repeats_per_metre;
+        kernel_.relief = options.relief;
+        kernel_.threshold = options.threshold;
+        kernel_.steepest = options.steepest;
+        kernel_.rounding = options.rounding;
+    }
+
+    [[nodiscard]] static result<void> check(const bark_options& options) {
+        const auto within = [](const char* what, float value, float least, float most) {
+            return value >= least && value <= most
+                       ? result<void>{}
+                       : fail(error_code::bad_input, std::string("Bark cannot have a ") + what +
+                                                         " of " + std::to_string(value) +
+                                                         "; it takes " + std::to_string(least) +
+                                                         " to " + std::to_string(most) + ".");
+        };
+        for (const result<void>& valid :
+             {within("threshold", options.threshold, 1e-6f, 1e6f),
+              within("relief", options.relief, -1e3f, 1e3f),
+              within("number of repeats around", static_cast<float>(options.repeats_around), 1,
+                     1024),
+              within("number of repeats a metre", options.repeats_per_metre, 1e-4f, 1e4f),
+              within("steepest rise", options.steepest, 0, 0.5f),
+              within("rounding", options.rounding, 0, 1),
+              within("number of passes", static_cast<float>(options.most_passes), 1, 12),
+              within("stretch", options.stretch, 1, 1e3f),
+              within("reserve", options.reserve, 0, 1e2f)}) {
+            if (!valid) {
+                return valid;
+            }
+        }
+        return {};
+    }
+
+    [[nodiscard]] static result<void> check(const bark_texture& texture) {
+        const std::uint64_t texels = std::uint64_t{texture.width} * texture.height;
+        const std::string size =
+            std::to_string(texture.width) + " x " + std::to_string(texture.height);
+        // Texel numbers are 32 bits wide, and exact as floats along each side.
+        constexpr std::uint32_t longest = 32768;
+        if (texels == 0 || texels != texture.heights.size() || texture.width > longest ||
+            texture.height > longest) {
+            return fail(error_code::bad_input,
+                        std::string("A bark texture of ")
+                            .append(size)
+                            .append(" texels with ")
+                            .append(std::to_string(texture.heights.size()))
+                            .append(" heights isn't possible; sides are 1 to 32768."));
+        }
+        for (const float h : texture.heights) {
+            if (!std::isfinite(h)) {
+                return fail(error_code::bad_input, std::string("A height of the bark texture of ")
+                                                       .append(size)
+                                                       .append(" texels is not a number."));
+            }
+        }
+        return {};
+    }
+
+    template <class Mesh>
+    [[nodiscard]] result<void> build(B& device, const Mesh& mesh, const bark_texture& texture) {
+        auto heights = make_buffer<B, float>(device, texture.heights);
+        if (!heights) {
+            return failure(heights.error());
+        }
+        heights_ = std::move(*heights);
+        for (std::uint32_t i = 0; i < mesh.parts().size(); ++i) {
+            const auto& p = mesh.parts()[i];
+            const draw_geometry<B> g = mesh.geometry(p);
+            result<void> done;
+            if (is_cap(p)) {
+                plain_.push_back({i, {}, g.count / 3});
+            } else if (g.indices && !g.length) {
+                done = sort_out(device, mesh, i, g);
+            } else {
+                part whole;
+                whole.of = i;
+                whole.elements = g.count / 3;
+                done = fit(device, mesh, std::move(whole));
+            }
+            if (!done) {
+                return done;
+            }
+        }
+        return {};
+    }
+
+    template <class Part>
+    [[nodiscard]] static bool is_cap(const Part& p) {
+        if constexpr (requires { p.caps; }) {
+            return p.caps;
+        } else {
+            return false;
+        }
+    }
+
+    /// Divides a part's triangles into those that may be refined and those that stay.
+    template <class Mesh>
+    [[nodiscard]] result<void> sort_out(B& device, const Mesh& mesh, std::uint32_t of,
+                                        const draw_geometry<B>& g) {
+        const buffer& vertices = mesh.parts()[of].vertices;
+        host_mesh rest;
+        if (auto done = append_vertices(device, vertices,
+                                        vertices.size_bytes() / sizeof(surface_vertex), rest);
+            !done) {
+            return done;
+        }
+        const auto indices = indices_of(device, g);
+        if (!indices) {
+            return failure(indices.error());
+        }
+        const float shortest = options_.threshold / options_.stretch;
+        std::vector<std::uint32_t> large, small;
+        for (std::size_t t = 0; t + 2 < indices->size(); t += 3) {
+            const auto position = [&](std::size_t k) {
+                return rest.vertices[(*indices)[t + k]].position;
+            };
+            const bool split =
+                shared::bark_pattern(position(0), position(1), position(2), shortest) != 0;
+            std::vector<std::uint32_t>& to = split ? large : small;
+            for (std::size_t k = 0; k < 3; ++k) {
+                to.push_back((*indices)[t + k] - g.base_vertex);
+            }
+        }
+        if (large.empty()) {
+            plain_.push_back({of, {}, g.count / 3});
+            return {};
+        }
+        if (!small.empty()) {
+            auto made = make_buffer<B, std::uint32_t>(device, small);
+            if (!made) {
+                return failure(made.error());
+            }
+            plain_.push_back({of, std::move(*made), static_cast<std::uint32_t>(small.size() / 3)});
+        }
+        auto made = make_buffer<B, std::uint32_t>(device, large);
+        if (!made) {
+            return failure(made.error());
+        }
+        part refined;
+        refined.of = of;
+        refined.elements = static_cast<std::uint32_t>(large.size() / 3);
+        refined.indices = std::move(*made);
+        return fit(device, mesh, std::move(refined));
+    }
+
+    /// Most triangles that one list may have.
+    [[nodiscard]] static std::uint64_t longest_list(const B& device) {
+        const device_limits limits = device.limits();
+        return std::min({limits.max_elements, limits.max_buffer_bytes / triangle_bytes,
+                         std::uint64_t{0xffffffffu} / 3});
+    }
+
+    /// Runs the passes of a part one by one to see how many there are, and makes room for each; or
+    /// does so for each half of the part, where a list of the whole would be too long.
+    template <class Mesh>
+    [[nodiscard]] result<void> fit(B& device, const Mesh& mesh, part p) {
+        p.counts.clear();
+        p.rooms.clear();
+        p.vertices.reset();
+        const std::uint64_t most = longest_list(device);
+        std::vector<std::uint64_t> needed;
+        bool too_long = p.elements > most;
+        if (!too_long) {
+            auto counts = probe(device, mesh, p, most);
+            if (!counts) {
+                return failure(counts.error());
+            }
+            needed = std::move(*counts);
+            too_long = needed.back() > most;
+        }
+        if (too_long) {
+            return fit_halves(device, mesh, std::move(p));
+        }
+        for (std::size_t pass = 0; pass < needed.size(); ++pass) {
+            const double spare = options_.policy == padding::compact ? options_.reserve : 0;
+            const auto room =
+                static_cast<std::uint64_t>(static_cast<double>(needed[pass]) * (1 + spare));
+            p.rooms.push_back(static_cast<std::uint32_t>(std::min(room, most)));
+            auto count = device.create_buffer(sizeof(count_record));
+            if (!count) {
+                return failure(count.error());
+            }
+            p.counts.push_back(std::move(*count));
+            const std::uint64_t bytes = p.rooms.back() * triangle_bytes;
+            if (pass + 1 == needed.size()) {
+                auto made = device.create_buffer(bytes);
+                if (!made) {
+                    return failure(made.error());
+                }
+                p.vertices = std::move(*made);
+            } else if (auto made = grow(device, scratch_[pass % 2], bytes); !made) {
+                return made;
+            }
+        }
+        parts_.push_back(std::move(p));
+        return {};
+    }
+
+    [[nodiscard]] static result<void> grow(B& device, std::optional<buffer>& to,
+                                           std::uint64_t bytes) {
+        if (to && to->size_bytes() >= bytes) {
+            return {};
+        }
+        to.reset();
+        auto made = device.create_buffer(bytes);
+        if (!made) {
+            return failure(made.error());
+        }
+        to = std::move(*made);
+        return {};
+    }
+
+    template <class Mesh>
+    [[nodiscard]] result<void> fit_halves(B& device, const Mesh& mesh, part p) {
+        const draw_geometry<B> g = mesh.geometry(mesh.parts()[p.of]);
+        if (p.elements < 2 || (!p.indices && g.length)) {
+            return fail(error_code::out_of_memory,
+                        "Bark would need a longer list of triangles than the device can bind; use "
+                        "a larger threshold or fewer passes.");
+        }
+        std::vector<std::uint32_t> indices(p.indices ? std::size_t{3} * p.elements : 0);
+        if (p.indices) {
+            auto read = read_back<B, std::uint32_t>(device, *p.indices, std::span(indices));
+            if (!read) {
+                return read;
+            }
+        }
+        const std::uint32_t half = p.elements / 2;
+        for (const bool second : {false, true}) {
+            part piece;
+            piece.of = p.of;
+            piece.first = p.first + (second && !p.indices ? half : 0);
+            piece.elements = second ? p.elements - half : half;
+            if (p.indices) {
+                auto made = make_buffer<B, std::uint32_t>(
+                    device,
+                    std::span<const std::uint32_t>(indices).subspan(
+                        second ? std::size_t{3} * half : 0, std::size_t{3} * piece.elements));
+                if (!made) {
+                    return failure(made.error());
+                }
+                piece.indices = std::move(*made);
+            }
+            if (auto done = fit(device, mesh, std::move(piece)); !done) {
+                return done;
+            }
+        }
+        return {};
+    }
+
+    /// How many triangles there are after each pass, for as many passes as edges need that are a
+    /// twentieth longer than now; ends early where a pass makes more than `most`.
+    template <class Mesh>
+    [[nodiscard]] result<std::vector<std::uint64_t>> probe(B& device, const Mesh& mesh,
+                                                           const part& p, std::uint64_t most) {
+        kernels::bark kernel = kernel_;
+        kernel.threshold *= 1 / 1.05f;
+        auto count = device.create_buffer(sizeof(count_record));
+        if (!count) {
+            return failure(count.error());
+        }
+        std::vector<std::uint64_t> needed;
+        std::optional<buffer> before;
+        std::uint64_t elements = p.elements;
+        const draw_geometry<B> g = mesh.geometry(mesh.parts()[p.of]);
+        if (!p.indices && g.length) {
+            const auto length = read_count(device, *g.length.buffer, g.length.offset);
+            if (!length) {
+                return failure(length.error());
+            }
+            elements = std::min<std::uint64_t>(elements, length->written);
+        }
+        while (needed.size() < options_.most_passes) {
+            // First into room for one triangle, to learn how many there are.
+            std::optional<buffer> list;
+            std::uint64_t room = 1;
+            count_record made;
+            for (int attempt = 0; attempt < 2; ++attempt) {
+                if (auto grown = grow(device, list, room * triangle_bytes); !grown) {
+                    return failure(grown.error());
+                }
+                const triangle_list<B> out{view<B>(*list), view<B>(*count), padding::compact};
+                auto done = run(device, [&](recorder& r) {
+                    if (needed.empty()) {
+                        record_first(r, mesh, p, kernel, out);
+                    } else {
+                        r.expand(kernel, later_bindings(*before),
+                                 range{0, static_cast<std::uint32_t>(elements)}, out);
+                    }
+                });
+                if (!done) {
+                    return failure(done.error());
+                }
+                const auto read = read_count(device, *count);
+                if (!read) {
+                    return failure(read.error());
+                }
+                made = *read;
+                room = std::max<std::uint64_t>(1, made.required);
+                if (made.required > most || made.required == elements) {
+                    break;
+                }
+            }
+            const bool split = made.required > elements;
+            if (split || needed.empty()) {
+                needed.push_back(options_.policy == padding::compact
+                                     ? std::uint64_t{made.required}
+                                     : 4 * (needed.empty() ? p.elements : needed.back()));
+            }
+            if (!split || made.required > most || needed.back() > most) {
+                break;
+            }
+            elements = made.required;
+            before = std::move(list);
+        }
+        return needed;
+    }
+
+    template <class Mesh>
+    void record_first(recorder& to, const Mesh& mesh, const part& p, kernels::bark kernel,
+                      const triangle_list<B>& out) const {
+        const auto& whole = mesh.parts()[p.of];
+        const draw_geometry<B> g = mesh.geometry(whole);
+        bindings<B, kernels::bark> bound{view<B>(whole.vertices), view<B>(*heights_),
+                                         view<B>(*heights_)};
+        std::uint32_t first = p.first;
+        kernel.base_vertex = g.base_vertex;
+        if (p.indices) {
+            kernel.indexed = 1;
+            bound[1] = view<B>(*p.indices);
+        } else if (g.indices) {
+            kernel.indexed = 1;
+            bound[1] = g.indices;
+            first += g.first / 3;
+        } else {
+            first += (g.first + g.base_vertex) / 3;
+        }
+        if (!p.indices && g.length) {
+            to.expand(kernel, bound, counted<B>{g.length, p.elements}, out);
+        } else {
+            to.expand(kernel, bound, range{first, p.elements}, out);
+        }
+    }
+
+    [[nodiscard]] bindings<B, kernels::bark> later_bindings(const buffer& triangles) const {
+        return {view<B>(triangles), view<B>(*heights_), view<B>(*heights_)};
+    }
+
+    [[nodiscard]] static result<count_record> read_count(B& device, const buffer& count,
+                                                         std::uint64_t offset = 0) {
+        count_record made;
+        auto done = device.download(count, offset, std::as_writable_bytes(std::span(&made, 1)));
+        return done ? result<count_record>(made) : result<count_record>(failure(done.error()));
+    }
+
+    [[nodiscard]] static result<bool> was_short(B& device, const part& p) {
+        for (const buffer& count : p.counts) {
+            const auto made = read_count(device, count);
+            if (!made) {
+                return failure(made.error());
+            }
+            if (made->required > made->written) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    [[nodiscard]] static result<void> append_vertices(B& device, const buffer& from,
+                                                      std::uint64_t count, host_mesh& to) {
+        const std::size_t first = to.vertices.size();
+        to.vertices.resize(first + count);
+        return read_back<B, surface_vertex>(device, from, std::span(to.vertices).subspan(first));
+    }
+
+    /// The vertices that a geometry draws, three a triangle.
+    [[nodiscard]] static result<std::vector<std::uint32_t>> indices_of(B& device,
+                                                                       const draw_geometry<B>& g) {
+        std::vector<std::uint32_t> indices(g.count);
+        for (std::uint32_t i = 0; i < g.count; ++i) {
+            indices[i] = g.first + i;
+        }
+        if (g.indices) {
+            auto done = device.download(*g.indices.buffer,
+                                        g.indices.offset + sizeof(std::uint32_t) * g.first,
+                                        std::as_writable_bytes(std::span(indices)));
+            if (!done) {
+                return failure(done.error());
+            }
+        }
+        for (std::uint32_t& index : indices) {
+            index += g.base_vertex;
+        }
+        return indices;
+    }
+
+    static constexpr std::uint64_t triangle_bytes = 3 * sizeof(surface_vertex);
+
+    bark_options options_;
+    kernels::bark kernel_;
+    std::optional<buffer> heights_; // there after create
+    std::optional<buffer> scratch_[2];
+    std::vector<part> parts_;
+    std::vector<plain_part> plain_;
+};
+
+/// The image that lit_bark draws with: a texture's normal map with the heights in its alpha, for
+/// repeats as the options have them on a branch of this radius.
+template <backend B>
+[[nodiscard]] result<typename B::image> make_bark_image(B& device, const bark_texture& texture,
+                                                        const bark_options& options, float radius) {
+    auto image = device.create_image({texture.width, texture.height, image_format::rgba8});
+    if (!image) {
+        return image;
+    }
+    const float around = 6.2831853f * radius / static_cast<float>(options.repeats_around);
+    const auto texels = normal_map(texture, options.relief, around, 1 / options.repeats_per_metre);
+    if (auto done = device.upload(*image, std::as_bytes(std::span(texels))); !done) {
+        return failure(done.error());
+    }
+    return image;
+}
+
+} // namespace skybark::trees
