@@ -1,0 +1,26 @@
+// Device side of skybark::kernels::segment_rings.
+#define KERNEL_PARAMETERS float pixels_per_radian; float error; uint fewest_sides; uint sides; uint gaps;
+#include "../skeletons/parameters.glsl"
+#include "../shared/detail.glsl"
+layout(std430, binding = 0) readonly buffer segments_buffer { branch_segment segments[]; };
+layout(std430, binding = 1) readonly buffer ends_buffer { branch_end ends[]; };
+layout(std430, binding = 2) readonly buffer details_buffer { vec4 details[]; };
+layout(std430, binding = 3) writeonly buffer rings_buffer { uvec4 made_of[]; };
+
+end_detail detail_at(uint end) {
+    vec4 d = details[end];
+    return end_detail(d.x, d.y, d.z, d.w);
+}
+
+void kernel_map(uint i) {
+    branch_segment s = segments[i];
+    branch_end a = ends[s.start];
+    branch_end b = ends[s.end];
+    end_detail da = detail_at(s.start);
+    end_detail db = detail_at(s.end);
+    a.radius = a.radius * da.scale;
+    b.radius = b.radius * db.scale;
+    segment_detail d = detail_of_segment(s, a, b, da, db, pixels_per_radian, error, fewest_sides,
+                                         sides, gaps);
+    made_of[i] = uvec4(d.sides, d.gaps, floatBitsToUint(d.fraction), d.caps);
+}
