@@ -1,5 +1,6 @@
 #pragma once
 // The CPU backend in one include.
 
+#include <skybark/cpu/bark.hpp>
 #include <skybark/cpu/device.hpp>
 #include <skybark/cpu/hermite_branch.hpp>

@@ -295,7 +295,8 @@ class recorder {
             for (std::uint64_t i = first; i < first + count; ++i) {
                 const auto element = static_cast<std::uint32_t>(elements.first + i);
                 for (std::uint32_t s = 0; s < kernel.strips(); ++s) {
-                    const std::uint32_t n = emit_strip(kernel, element, s, sink, spans...);
+                    const std::uint32_t n =
+                        plain_program<K>::strip(kernel, element, s, sink, spans...);
                     sink.degenerate(kernel.strip_triangles() - n);
                 }
             }
@@ -321,7 +322,7 @@ class recorder {
         };
         device_->for_pieces(blocks, 16, [&](std::uint64_t first, std::uint64_t count) {
             for (std::uint64_t b = first; b < first + count; ++b) {
-                offsets[b + 1] = count_triangles(kernel, elements_of(b), spans...);
+                offsets[b + 1] = program<K>::count(kernel, elements_of(b), spans...);
             }
         });
         for (std::uint64_t b = 0; b < blocks; ++b) {
@@ -334,39 +335,11 @@ class recorder {
             triangle_sink<vertex> sink(to + offsets[first] * 3 * sizeof(vertex),
                                        room - offsets[first]);
             for (std::uint64_t b = first; b < first + count; ++b) {
-                const range part = elements_of(b);
-                for (std::uint32_t i = part.first; i < part.first + part.count; ++i) {
-                    for (std::uint32_t s = 0; s < kernel.strips(); ++s) {
-                        emit_strip(kernel, i, s, sink, spans...);
-                    }
-                }
+                program<K>::triangles(kernel, elements_of(b), sink, spans...);
             }
             finish_streaming();
         });
         write_count(out, offsets[blocks], room);
-    }
-
-    template <class K, class... Spans>
-    [[nodiscard]] static std::uint64_t count_triangles(const K& kernel, range elements,
-                                                       Spans... spans) {
-        std::uint64_t triangles = 0;
-        for (std::uint32_t i = elements.first; i < elements.first + elements.count; ++i) {
-            for (std::uint32_t s = 0; s < kernel.strips(); ++s) {
-                triangles += kernel.triangles(i, s, spans...);
-            }
-        }
-        return triangles;
-    }
-
-    template <class K, class Sink, class... Spans>
-    static std::uint32_t emit_strip(const K& kernel, std::uint32_t element, std::uint32_t strip,
-                                    Sink& sink, Spans... spans) {
-        const std::uint32_t triangles = kernel.triangles(element, strip, spans...);
-        if (triangles != 0) {
-            sink.begin_strip();
-            kernel.strip(element, strip, 0, triangles + 2, sink, spans...);
-        }
-        return triangles;
     }
 
     device* device_;

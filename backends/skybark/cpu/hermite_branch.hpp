@@ -213,7 +213,7 @@ struct rings4 {
 } // namespace lanes
 
 template <>
-struct program<kernels::hermite_branch> {
+struct program<kernels::hermite_branch> : plain_program<kernels::hermite_branch> {
     using kernel_type = kernels::hermite_branch;
 
     static void rings(const kernel_type& kernel, range elements, std::byte* to,

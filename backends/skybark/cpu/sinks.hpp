@@ -68,6 +68,14 @@ class triangle_sink {
         }
     }
 
+    /// Whole triangles may be written from `place` on, as long as there is `room`, past the sink.
+    [[nodiscard]] std::byte* place() const { return to_; }
+    [[nodiscard]] std::uint64_t room() const { return room_; }
+    void skip(std::uint64_t triangles) {
+        to_ += triangles * 3 * sizeof(Vertex);
+        room_ -= triangles;
+    }
+
   private:
     void triangle(const Vertex& a, const Vertex& b, const Vertex& c) {
         if (room_ == 0) {
