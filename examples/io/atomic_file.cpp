@@ -18,17 +18,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The name of the temporary file that a signal handler has to remove. Names that are longer than
-/// this aren't noted.
+/// The names of the temporary files that a signal handler has to remove. Names that are longer than
+/// a slot, or more at once than there are slots, aren't noted.
 constexpr std::size_t longest_name = 4096;
-std::array<char, longest_name> unfinished{};
-std::atomic<bool> is_unfinished{false};
+struct slot {
+    std::atomic<bool> used{false};
+    std::atomic<bool> noted{false}; ///< the name is whole
+    std::array<char, longest_name> name{};
+};
+std::array<slot, 16> unfinished{};
 
-void note_unfinished(const std::string& name) {
-    is_unfinished = false;
-    if (name.size() < longest_name) {
-        std::memcpy(unfinished.data(), name.c_str(), name.size() + 1);
-        is_unfinished = true;
+/// The number of the slot, or -1.
+int note_unfinished(const std::string& name) {
+    for (std::size_t i = 0; i < unfinished.size() && name.size() < longest_name; ++i) {
+        if (!unfinished[i].used.exchange(true)) {
+            std::memcpy(unfinished[i].name.data(), name.c_str(), name.size() + 1);
+            unfinished[i].noted = true;
+            return static_cast<int>(i);
+        }
+    }
+    return -1;
+}
+
+void forget_unfinished(int number) {
+    if (number >= 0) {
+        slot& s = unfinished[static_cast<std::size_t>(number)];
+        s.noted = false;
+        s.used = false;
     }
 }
 
@@ -125,7 +141,7 @@ result<atomic_file> atomic_file::create(const std::string& path) {
         if (file.descriptor_ >= 0) {
             file.target_ = *target;
             file.temporary_ = name;
-            note_unfinished(name);
+            file.slot_ = note_unfinished(name);
         } else if (errno != EEXIST) {
             break;
         }
@@ -144,13 +160,14 @@ result<atomic_file> atomic_file::create(const std::string& path) {
 atomic_file::atomic_file(atomic_file&& other) noexcept
     : path_(std::move(other.path_)), target_(std::move(other.target_)),
       temporary_(std::exchange(other.temporary_, {})),
-      descriptor_(std::exchange(other.descriptor_, -1)) {}
+      descriptor_(std::exchange(other.descriptor_, -1)), slot_(std::exchange(other.slot_, -1)) {}
 
 atomic_file& atomic_file::operator=(atomic_file&& other) noexcept {
     std::swap(path_, other.path_);
     std::swap(target_, other.target_);
     std::swap(temporary_, other.temporary_);
     std::swap(descriptor_, other.descriptor_);
+    std::swap(slot_, other.slot_);
     return *this;
 }
 
@@ -164,7 +181,7 @@ void atomic_file::abandon() noexcept {
     if (!temporary_.empty()) {
         ::unlink(temporary_.c_str());
         temporary_.clear();
-        is_unfinished = false;
+        forget_unfinished(std::exchange(slot_, -1));
     }
 }
 
@@ -188,7 +205,7 @@ result<void> atomic_file::write(std::span<const std::byte> bytes) {
     return write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
-result<void> atomic_file::commit() {
+result<void> atomic_file::finish() {
     const bool direct = temporary_.empty();
     // A disk may say only now that it is full. Pipes and devices can't be synchronised.
     if (!direct && ::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOSYS) {
@@ -197,14 +214,23 @@ result<void> atomic_file::commit() {
     if (::close(std::exchange(descriptor_, -1)) != 0) {
         return failed("can't be written");
     }
-    if (direct) {
+    return {};
+}
+
+result<void> atomic_file::commit() {
+    if (descriptor_ >= 0) {
+        if (auto done = finish(); !done) {
+            return done;
+        }
+    }
+    if (temporary_.empty()) {
         return {};
     }
     if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
         return failed("can't be renamed to");
     }
     temporary_.clear();
-    is_unfinished = false;
+    forget_unfinished(std::exchange(slot_, -1));
     return {};
 }
 
@@ -235,8 +261,10 @@ result<void> check_writable(const std::string& path) {
 }
 
 void remove_unfinished() noexcept {
-    if (is_unfinished) {
-        ::unlink(unfinished.data());
+    for (const slot& s : unfinished) {
+        if (s.noted) {
+            ::unlink(s.name.data());
+        }
     }
 }
 

@@ -27,7 +27,10 @@ class atomic_file {
 
     [[nodiscard]] result<void> write(std::string_view bytes);
     [[nodiscard]] result<void> write(std::span<const std::byte> bytes);
-    /// Brings the bytes to the disk and gives the file its name.
+    /// Brings the bytes to the disk. What is left for `commit` then hardly ever fails: for several
+    /// files that belong together. Nothing can be written any more.
+    [[nodiscard]] result<void> finish();
+    /// Brings the bytes to the disk, unless that is done, and gives the file its name.
     [[nodiscard]] result<void> commit();
 
   private:
@@ -39,6 +42,7 @@ class atomic_file {
     std::string target_;    ///< what is replaced; empty where bytes go there directly
     std::string temporary_; ///< empty: nothing to remove
     int descriptor_ = -1;
+    int slot_ = -1; ///< where the signal handler finds the temporary name
 };
 
 /// All of a file at once.
@@ -48,7 +52,7 @@ class atomic_file {
 /// asked before hours of work. Errors: as `atomic_file::create`.
 [[nodiscard]] result<void> check_writable(const std::string& path);
 
-/// Removes the temporary file that is being written, if any. For a signal handler: it calls
+/// Removes the temporary files that are being written, if any. For a signal handler: it calls
 /// nothing that such a one mustn't.
 void remove_unfinished() noexcept;
 

@@ -97,6 +97,20 @@ TEST_F(atomic_file, is_removed_by_a_signal_handler) {
     EXPECT_EQ(content(), "kept") << "a finished file is none of its business";
 }
 
+TEST_F(atomic_file, several_wait_for_their_names) {
+    auto a = io::atomic_file::create(path);
+    auto b = io::atomic_file::create(path + ".b");
+    ASSERT_TRUE(a && b);
+    ASSERT_TRUE(a->write("a") && b->write("b"));
+    ASSERT_TRUE(a->finish() && b->finish());
+    EXPECT_FALSE(std::filesystem::exists(path));
+    ASSERT_TRUE(b->commit());
+    EXPECT_EQ(files(), 2u);
+    io::remove_unfinished();
+    EXPECT_EQ(files(), 1u) << "the one without a name";
+    EXPECT_TRUE(std::filesystem::exists(path + ".b"));
+}
+
 TEST_F(atomic_file, takes_names_as_long_as_the_file_system_does) {
     path = (folder / std::string(255, 'n')).string();
     const auto done = io::write_file(path, "long");
