@@ -13,47 +13,41 @@ namespace skybark::io {
 
 namespace {
 
-struct destination {
-    atomic_file& file;
-    result<void> done;
-};
-
-void write_piece(void* context, void* data, int size) {
-    auto& to = *static_cast<destination*>(context);
-    if (to.done) {
-        to.done = to.file.write(
-            std::string_view(static_cast<const char*>(data), static_cast<std::size_t>(size)));
-    }
+void append(void* context, void* data, int size) {
+    static_cast<std::string*>(context)->append(static_cast<const char*>(data),
+                                               static_cast<std::size_t>(size));
 }
 
 } // namespace
 
-result<void> write_png(const std::string& path, std::span<const std::uint8_t> pixels,
-                       std::uint32_t width, std::uint32_t height) {
+result<std::string> encode_png(const std::string& name, std::span<const std::uint8_t> pixels,
+                               std::uint32_t width, std::uint32_t height) {
     constexpr std::uint32_t longest = 16384; // sizes are ints below
     const std::string size = std::to_string(width) + " x " + std::to_string(height) + " pixels";
     if (width == 0 || height == 0 || width > longest || height > longest ||
         pixels.size() != std::size_t{4} * width * height) {
-        return fail(error_code::bad_input, in_quotes(path) + " can't be written: a picture of " +
+        return fail(error_code::bad_input, in_quotes(name) + " can't be written: a picture of " +
                                                size + " from " + std::to_string(pixels.size()) +
                                                " bytes isn't possible.");
     }
-    auto file = atomic_file::create(path);
-    if (!file) {
-        return failure(file.error());
-    }
-    destination to{*file, {}};
+    std::string png;
     const int made =
-        stbi_write_png_to_func(write_piece, &to, static_cast<int>(width), static_cast<int>(height),
-                               4, pixels.data(), static_cast<int>(4 * width));
-    if (!to.done) {
-        return to.done;
-    }
+        stbi_write_png_to_func(append, &png, static_cast<int>(width), static_cast<int>(height), 4,
+                               pixels.data(), static_cast<int>(4 * width));
     if (made == 0) {
         return fail(error_code::out_of_memory, "There is not enough memory to compress " +
-                                                   in_quotes(path) + ", " + size + ".");
+                                                   in_quotes(name) + ", " + size + ".");
     }
-    return file->commit();
+    return png;
+}
+
+result<void> write_png(const std::string& path, std::span<const std::uint8_t> pixels,
+                       std::uint32_t width, std::uint32_t height) {
+    const auto png = encode_png(path, pixels, width, height);
+    if (!png) {
+        return failure(png.error());
+    }
+    return write_file(path, *png);
 }
 
 } // namespace skybark::io

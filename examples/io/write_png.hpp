@@ -15,4 +15,9 @@ namespace skybark::io {
 [[nodiscard]] result<void> write_png(const std::string& path, std::span<const std::uint8_t> pixels,
                                      std::uint32_t width, std::uint32_t height);
 
+/// The bytes of that file, for what holds a PNG inside. `name` is for the sentences.
+[[nodiscard]] result<std::string> encode_png(const std::string& name,
+                                             std::span<const std::uint8_t> pixels,
+                                             std::uint32_t width, std::uint32_t height);
+
 } // namespace skybark::io
