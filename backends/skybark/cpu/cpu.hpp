@@ -4,3 +4,4 @@
 #include <skybark/cpu/bark.hpp>
 #include <skybark/cpu/device.hpp>
 #include <skybark/cpu/hermite_branch.hpp>
+#include <skybark/cpu/leaf_blade.hpp>

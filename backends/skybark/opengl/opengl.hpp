@@ -8,13 +8,21 @@
 // context made, include headless.hpp beside this.
 
 #include <skybark/opengl/device.hpp>
+#include <skybark/opengl/programs/bark.hpp>
 #include <skybark/opengl/programs/branch_cap.hpp>
+#include <skybark/opengl/programs/branch_join.hpp>
+#include <skybark/opengl/programs/branch_tip.hpp>
+#include <skybark/opengl/programs/branch_detail.hpp>
+#include <skybark/opengl/programs/cast_leaf_shadow.hpp>
 #include <skybark/opengl/programs/cast_shadow.hpp>
 #include <skybark/opengl/programs/clear_sky.hpp>
+#include <skybark/opengl/programs/detailed_branch.hpp>
 #include <skybark/opengl/programs/develop.hpp>
 #include <skybark/opengl/programs/grid_wind.hpp>
 #include <skybark/opengl/programs/hermite_branch.hpp>
+#include <skybark/opengl/programs/leaf_blade.hpp>
 #include <skybark/opengl/programs/lit_branch.hpp>
+#include <skybark/opengl/programs/lit_leaf.hpp>
 #include <skybark/opengl/programs/meadow_ground.hpp>
 #include <skybark/opengl/programs/pose_ends.hpp>
 #include <skybark/opengl/programs/probe_image.hpp>
@@ -24,5 +32,6 @@
 #include <skybark/opengl/programs/probe_strips.hpp>
 #include <skybark/opengl/programs/probe_surface.hpp>
 #include <skybark/opengl/programs/ring_indices.hpp>
+#include <skybark/opengl/programs/segment_rings.hpp>
 #include <skybark/opengl/programs/wave_wind.hpp>
 #include <skybark/opengl/programs/wind_load.hpp>

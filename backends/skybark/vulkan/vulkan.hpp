@@ -4,13 +4,21 @@
 
 #include <skybark/vulkan/transfers.hpp>
 
+#include <skybark/vulkan/programs/bark.hpp>
 #include <skybark/vulkan/programs/branch_cap.hpp>
+#include <skybark/vulkan/programs/branch_join.hpp>
+#include <skybark/vulkan/programs/branch_tip.hpp>
+#include <skybark/vulkan/programs/branch_detail.hpp>
+#include <skybark/vulkan/programs/cast_leaf_shadow.hpp>
 #include <skybark/vulkan/programs/cast_shadow.hpp>
 #include <skybark/vulkan/programs/clear_sky.hpp>
+#include <skybark/vulkan/programs/detailed_branch.hpp>
 #include <skybark/vulkan/programs/develop.hpp>
 #include <skybark/vulkan/programs/grid_wind.hpp>
 #include <skybark/vulkan/programs/hermite_branch.hpp>
+#include <skybark/vulkan/programs/leaf_blade.hpp>
 #include <skybark/vulkan/programs/lit_branch.hpp>
+#include <skybark/vulkan/programs/lit_leaf.hpp>
 #include <skybark/vulkan/programs/meadow_ground.hpp>
 #include <skybark/vulkan/programs/pose_ends.hpp>
 #include <skybark/vulkan/programs/probe_image.hpp>
@@ -20,5 +28,6 @@
 #include <skybark/vulkan/programs/probe_strips.hpp>
 #include <skybark/vulkan/programs/probe_surface.hpp>
 #include <skybark/vulkan/programs/ring_indices.hpp>
+#include <skybark/vulkan/programs/segment_rings.hpp>
 #include <skybark/vulkan/programs/wave_wind.hpp>
 #include <skybark/vulkan/programs/wind_load.hpp>

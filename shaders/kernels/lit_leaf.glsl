@@ -1,0 +1,44 @@
+// Device side of skybark::kernels::lit_leaf.
+#define KERNEL_VARYINGS 2
+#define KERNEL_IMAGES 2
+#define KERNEL_PARAMETERS float through;
+#include "../skeletons/parameters.glsl"
+#include "../shared/shading.glsl"
+#include "../shared/leaf.glsl"
+#include "scene.glsl.inc"
+layout(std430, binding = 0) readonly buffer vertices_buffer { vec4 vertices[]; };
+layout(std430, binding = 1) readonly buffer scene_buffer { scene_record scene; };
+
+#ifdef SKYBARK_VERTEX_STAGE
+vec4 kernel_vertex(uint index) {
+    varying_out[0] = vertices[3u * index];
+    varying_out[1] = vertices[3u * index + 1u];
+    return scene.to_clip * vec4(varying_out[0].xyz, 1.0);
+}
+#endif
+#ifdef SKYBARK_FRAGMENT_STAGE
+vec3 ambient_of(vec3 n) {
+    return ambient_light(scene.ambient[0], scene.ambient[1], scene.ambient[2], scene.ambient[3], n);
+}
+
+bool kernel_fragment(vec2 pixel, bool front) {
+    vec4 texel = textureLod(kernel_images[1], vec2(varying_in[0].w, varying_in[1].w), 0.0);
+    if (texel.w < 0.5) {
+        return false;
+    }
+    vec3 position = varying_in[0].xyz;
+    vec3 upper = normalize(varying_in[1].xyz);
+    vec3 n = front ? upper : -upper;
+    float facing = dot(n, scene.sky.to_sun.xyz);
+    float sun = sun_at(scene, position, facing > 0.0 ? n : -n);
+    vec3 here = ambient_of(n);
+    vec3 behind = ambient_of(-n);
+    vec3 albedo = vec3(leaf_linear(texel.x), leaf_linear(texel.y), leaf_linear(texel.z));
+    vec3 passed = albedo * vec3(1.1, 1.0, 0.3) * through;
+    vec3 light = scene.sky.sunlight.xyz * sun;
+    color_out = vec4(leaf_lit(albedo.x, passed.x, light.x, facing, here.x, behind.x),
+                     leaf_lit(albedo.y, passed.y, light.y, facing, here.y, behind.y),
+                     leaf_lit(albedo.z, passed.z, light.z, facing, here.z, behind.z), 1.0);
+    return true;
+}
+#endif
