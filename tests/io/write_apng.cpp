@@ -237,6 +237,10 @@ TEST_F(write_apng, is_read_back_as_it_was) {
         std::generate(frames.back().begin(), frames.back().end(),
                       [&] { return static_cast<std::uint8_t>(random()); });
     }
+    // Two corners of noise: to lay them over would be small, but they aren't opaque.
+    frames.push_back(frames.back());
+    paint(frames.back(), 0, 0, 2, {9, 9, 9, 100});
+    paint(frames.back(), 58, 34, 2, {9, 9, 9, 255});
     const animation read = round_trip(frames, wide, high, {3, 50});
     EXPECT_EQ(read.width, wide);
     EXPECT_EQ(read.height, high);
@@ -270,10 +274,16 @@ TEST_F(write_apng, is_a_picture_for_those_who_know_no_animation) {
 }
 
 TEST_F(write_apng, stores_what_changes_alone) {
-    std::vector<bytes> frames(20, gradient(255));
+    bytes noise(gradient(255).size());
+    std::mt19937 random(4);
+    std::generate(noise.begin(), noise.end(), [&] { return static_cast<std::uint8_t>(random()); });
+    std::vector<bytes> frames(20, noise); // a rectangle of it has some 9 kB
     for (std::uint32_t i = 0; i < 20; ++i) {
-        paint(frames[i], i, 1, 2, {0, 0, 0, 255});
-        paint(frames[i], 58 - i, 33, 2, {0, 0, 0, 255});
+        // What is uncovered again has to be opaque to be laid over.
+        paint(frames[i], 0, 0, 25, {0, 0, 0, 255});
+        paint(frames[i], 34, 12, 25, {0, 0, 0, 255});
+        paint(frames[i], i, 1, 2, {255, 255, 255, 255});
+        paint(frames[i], 57 - i, 33, 2, {255, 255, 255, 255});
     }
     const std::size_t first = round_trip({frames[0]}, wide, high).size;
     // A frame more takes 38 bytes of frame control, 16 of frame data and what is new.
