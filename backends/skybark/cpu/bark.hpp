@@ -70,6 +70,7 @@ struct program<kernels::bark> : plain_program<kernels::bark> {
     template <class Sink>
     static void triangles(const kernel_type& kernel, range elements, Sink& sink,
                           vertices_span vertices, indices_span indices, heights_span heights) {
+        static const corner_table table;
         for (std::uint32_t i = elements.first; i < elements.first + elements.count; ++i) {
             if (sink.room() < 4) {
                 plain_program<kernel_type>::triangles(kernel, {i, 1}, sink, vertices, indices,
@@ -84,11 +85,25 @@ struct program<kernels::bark> : plain_program<kernels::bark> {
                         lanes::load(reinterpret_cast<const std::byte*>(from) + 16 * row);
                 }
             }
-            sink.skip(write(kernel, p, sink.place(), heights));
+            sink.skip(write(kernel, table, p, sink.place(), heights));
         }
     }
 
   private:
+    /// shared::bark_corner of every pattern.
+    struct corner_table {
+        std::uint8_t codes[2][8][12];
+
+        corner_table() {
+            for (std::uint32_t i = 0; i < 2 * 8 * 12; ++i) {
+                const std::uint32_t pattern = i / 12 % 8;
+                const bool other = i >= 8 * 12;
+                codes[i / 96][pattern][i % 12] = static_cast<std::uint8_t>(
+                    shared::bark_corner(pattern, other, i % 12 / 3, i % 3));
+            }
+        }
+    };
+
     /// Corners and midpoints 0 … 5 as in memory: three vectors each.
     struct points {
         lanes::f4 rows[6][3];
@@ -107,8 +122,8 @@ struct program<kernels::bark> : plain_program<kernels::bark> {
     }
 
     /// Writes the triangles of one, and says how many.
-    [[nodiscard]] static std::uint32_t write(const kernel_type& kernel, points& p, std::byte* to,
-                                             heights_span heights) {
+    [[nodiscard]] static std::uint32_t write(const kernel_type& kernel, const corner_table& table,
+                                             points& p, std::byte* to, heights_span heights) {
         using namespace lanes;
         f4 c[3][4]; // the corners' columns: x, y, z, u; normal, v; tangent, w
         for (std::uint32_t row = 0; row < 3; ++row) {
@@ -126,9 +141,10 @@ struct program<kernels::bark> : plain_program<kernels::bark> {
         add_midpoints(kernel, c, p, heights);
         const std::uint32_t count = shared::bark_triangles(split);
         const bool other = count == 3 && other_diagonal(p, split);
+        const std::uint8_t* code = table.codes[other ? 1 : 0][split];
         for (std::uint32_t t = 0; t < count; ++t) {
-            put(p, shared::bark_corner(split, other, t, 0), shared::bark_corner(split, other, t, 1),
-                shared::bark_corner(split, other, t, 2), to + t * 3 * sizeof(surface_vertex));
+            put(p, code[3 * t], code[3 * t + 1], code[3 * t + 2],
+                to + t * 3 * sizeof(surface_vertex));
         }
         return count;
     }
@@ -215,23 +231,25 @@ struct program<kernels::bark> : plain_program<kernels::bark> {
         const f4 y = texel(v * kernel.repeats_along, kernel.height);
         const f4 left = floor(x);
         const f4 low = floor(y);
-        const i4 column = __builtin_convertvector(left, i4);
-        const i4 row = __builtin_convertvector(low, i4);
-        f4 h00 = splat(0), h10 = h00, h01 = h00, h11 = h00;
-        for (int k = 0; k < 3; ++k) {
-            const auto i = static_cast<std::uint32_t>(column[k]);
-            const auto j = static_cast<std::uint32_t>(row[k]);
-            const std::uint32_t x0 = i < kernel.width ? i : 0;
-            const std::uint32_t x1 = x0 + 1 < kernel.width ? x0 + 1 : 0;
-            const std::uint32_t y0 = j < kernel.height ? j : 0;
-            const std::uint32_t y1 = y0 + 1 < kernel.height ? y0 + 1 : 0;
-            const float* row0 = heights.data() + std::size_t{y0} * kernel.width;
-            const float* row1 = heights.data() + std::size_t{y1} * kernel.width;
-            h00[k] = row0[x0];
-            h10[k] = row0[x1];
-            h01[k] = row1[x0];
-            h11[k] = row1[x1];
-        }
+        const auto wrapped = [](i4 at, std::uint32_t size) {
+            const auto n = static_cast<std::int32_t>(size);
+            return at & (at < i4{n, n, n, n});
+        };
+        const i4 x0 = wrapped(__builtin_convertvector(left, i4), kernel.width);
+        const i4 x1 = wrapped(x0 + 1, kernel.width);
+        const i4 y0 = wrapped(__builtin_convertvector(low, i4), kernel.height);
+        const i4 y1 = wrapped(y0 + 1, kernel.height);
+        const auto gather = [&](i4 column, i4 row) {
+            const auto at = [&](int k) {
+                return heights[static_cast<std::size_t>(row[k]) * kernel.width +
+                               static_cast<std::size_t>(column[k])];
+            };
+            return f4{at(0), at(1), at(2), 0};
+        };
+        const f4 h00 = gather(x0, y0);
+        const f4 h10 = gather(x1, y0);
+        const f4 h01 = gather(x0, y1);
+        const f4 h11 = gather(x1, y1);
         const f4 tx = x - left;
         const f4 ty = y - low;
         const f4 bottom = h00 + (h10 - h00) * tx;
