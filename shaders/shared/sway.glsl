@@ -1,0 +1,521 @@
+// Branches that sway: rigid segments on springs, solved in two passes over the levels of the tree.
+//
+// A segment's motion is (turn, speed): its angular velocity, and the velocity of its base. All
+// vectors are in the world's axes and about the base of their own segment. Momentum about it is
+// (A turn + B speed, B^T turn + C speed), and the blocks A, B, C of a segment that carries others
+// on its joints follow from theirs: Featherstone, "Rigid Body Dynamics Algorithms" (2008), ch. 7.
+// How a step is cut so that energy never grows: docs/sway.md.
+#include "records.glsl"
+#include "quaternion.glsl"
+#include "pose.glsl"
+
+// What never changes of a segment and of the joint at its base, at rest.
+struct sway_joint {
+    vec3 axis;        // unit, from base to tip
+    float extent;     // m, its length
+    vec3 offset;      // m, from the parent's base to this one's; 0 at a root
+    float stiffness;  // N m/rad, of the joint
+    vec3 base;        // m
+    float relaxation; // s, the joint's damping over its stiffness; the same all over a tree
+    float mass;       // kg
+    float lever;      // kg m, mass times the distance of its centre from the base
+    float across;     // kg m2, about the base, across the axis
+    float along;      // kg m2, about the axis
+    uint parent;      // a root's is the ground: the record after the last
+    uint first_child;
+    uint child_count;
+    uint root;        // of the tree
+};
+
+// Where a segment is and how it moves. `bend` and `rate` are in the parent's axes as they were at
+// rest and turn with the parent.
+struct sway_state {
+    vec4 rotation;    // from rest to now
+    vec3 bend;        // rad, from rest, a rotation vector
+    float before;     // J, its kinetic energy with these rates in the pose before this one
+    vec3 rate;        // rad/s, of the joint
+    float after;      // J, its kinetic energy with these rates in this pose
+    vec3 turn;        // rad/s
+    float reserved0;
+    vec3 speed;       // m/s
+    float reserved1;
+    vec3 shift;       // m, how far its base is from where it rests
+    float reserved2;
+    vec3 step_turn;   // rad/s, mean over the step that led here
+    float reserved3;
+    vec3 step_speed;  // m/s, the same
+    float reserved4;
+};
+
+// Kinetic energy of a segment and all that it carries, and at a root the scale of all rates that
+// brings `after` back to `before`.
+struct sway_energy {
+    float before;
+    float after;
+    float scale;
+    float reserved;
+};
+
+// Articulated inertia and momentum, as a segment hands them to its parent: rows of B with L, then
+// P, then the upper triangles of A and C.
+struct sway_carry {
+    vec4 b0;
+    vec4 b1;
+    vec4 b2;
+    vec4 p;
+    vec4 a;  // xx xy xz yy
+    vec4 ac; // A: yz zz; C: xx xy
+    vec4 c;  // xz yy yz zz
+};
+
+// How a joint answers to the motion of its parent: rate = free - give turn - pull speed.
+struct sway_gain {
+    vec4 b0; // rows of pull, and free
+    vec4 b1;
+    vec4 b2;
+    vec4 e;  // give: xx xy xz yy
+    vec4 er; // give: yz zz
+    vec4 r;  // m, from the parent's base to this one's
+};
+
+// How a joint is stepped.
+struct sway_rule {
+    float weight; // of the new rate in the mean over the step, 1/2 ... 1
+    float hold;   // kg m2, what its spring and damper add to the inertia
+    float spring; // N m s/rad, the impulse of its spring
+};
+
+struct sway_sym {
+    float xx;
+    float xy;
+    float xz;
+    float yy;
+    float yz;
+    float zz;
+};
+
+float sway_dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+vec3 sway_cross(vec3 a, vec3 b) {
+    return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+
+vec3 sway_times(sway_sym m, vec3 v) {
+    return vec3(m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
+                m.xz * v.x + m.yz * v.y + m.zz * v.z);
+}
+
+// The inverse of a positive definite matrix, by its factors L D L^T: the product keeps it positive
+// where cofactors lose that to rounding.
+sway_sym sway_inverse(sway_sym m) {
+    float d0 = 1.0f / m.xx;
+    float l1 = m.xy * d0;
+    float l2 = m.xz * d0;
+    float d1 = 1.0f / (m.yy - l1 * m.xy);
+    float t = m.yz - l1 * m.xz;
+    float l3 = t * d1;
+    float d2 = 1.0f / (m.zz - l2 * m.xz - l3 * t);
+    float k2 = l1 * l3 - l2;
+    sway_sym y;
+    y.zz = d2;
+    y.yz = -l3 * d2;
+    y.xz = k2 * d2;
+    y.yy = d1 + l3 * l3 * d2;
+    y.xy = -l1 * d1 - l3 * y.xz;
+    y.xx = d0 + l1 * l1 * d1 + k2 * y.xz;
+    return y;
+}
+
+// The upper triangle of the product of two symmetric matrices that commute.
+sway_sym sway_product(sway_sym a, sway_sym b) {
+    sway_sym m;
+    m.xx = a.xx * b.xx + a.xy * b.xy + a.xz * b.xz;
+    m.xy = a.xx * b.xy + a.xy * b.yy + a.xz * b.yz;
+    m.xz = a.xx * b.xz + a.xy * b.yz + a.xz * b.zz;
+    m.yy = a.xy * b.xy + a.yy * b.yy + a.yz * b.yz;
+    m.yz = a.xy * b.xz + a.yy * b.yz + a.yz * b.zz;
+    m.zz = a.xz * b.xz + a.yz * b.yz + a.zz * b.zz;
+    return m;
+}
+
+// sin x / x from the square of x, up to x = pi / 2.
+float sway_sinc(float s) {
+    return 1.0f + s * (-0.1666666664f +
+                       s * (0.0083333315f +
+                            s * (-0.0001984090f + s * (0.0000027526f + s * -0.0000000239f))));
+}
+
+// The rotation by a rotation vector of any length.
+vec4 sway_rotation(vec3 bend) {
+    float square = sway_dot(bend, bend);
+    float kept = 1.0f;
+    if (square > 9.8f) {
+        float angle = sqrt(square);
+        float left = angle - 6.2831853f * floor(angle * 0.15915494f + 0.5f);
+        kept = left / angle;
+        square = left * left;
+    }
+    float s = sway_sinc(0.25f * square);
+    float c = sway_sinc(0.0625f * square);
+    float by = 0.5f * s * kept;
+    return vec4(by * bend.x, by * bend.y, by * bend.z, 1.0f - 0.125f * square * (c * c));
+}
+
+// A joint's rotation after its parent's, kept a unit quaternion along the longest branch.
+vec4 sway_rotated(vec4 parent, vec3 bend) {
+    vec4 q = quaternion_times(parent, sway_rotation(bend));
+    float n = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+    return q * (1.5f - 0.5f * n);
+}
+
+vec3 sway_back(vec4 q, vec3 v) { return quaternion_rotate(vec4(-q.x, -q.y, -q.z, q.w), v); }
+
+sway_rule sway_rule_of(sway_joint joint, float seconds) {
+    // Damping goes half into the mean's weight and half into the joint, as far as the weight goes.
+    float share = min(joint.relaxation / seconds, 1.0f);
+    float rest = joint.relaxation - 0.5f * share * seconds;
+    sway_rule rule;
+    rule.weight = 0.5f + 0.5f * share;
+    rule.spring = rule.weight * seconds * joint.stiffness;
+    rule.hold = rule.spring * (0.5f * seconds + rest);
+    return rule;
+}
+
+float sway_kinetic(sway_joint joint, vec3 axis, vec3 turn, vec3 speed) {
+    float spin = sway_dot(axis, turn);
+    return 0.5f * (joint.across * sway_dot(turn, turn) +
+                   (joint.along - joint.across) * (spin * spin) +
+                   joint.mass * sway_dot(speed, speed)) +
+           joint.lever * sway_dot(sway_cross(turn, axis), speed);
+}
+
+// Inertia and momentum of a segment alone, with the impulse of its load.
+sway_carry sway_body(sway_joint joint, sway_state state, segment_load load, sway_rule rule,
+                     float scale, float seconds) {
+    vec3 axis = quaternion_rotate(state.rotation, joint.axis);
+    vec3 turn = state.turn * scale;
+    vec3 speed = state.speed * scale;
+    vec3 middle = axis * (0.5f * joint.extent);
+    float share = rule.weight * seconds;
+    float drag = share * load.drag;
+    vec3 push = load.force * share;
+
+    vec3 lever = axis * joint.lever;
+    vec3 momentum = speed * joint.mass + sway_cross(turn, lever);
+    vec3 spin = turn * joint.across +
+                axis * ((joint.along - joint.across) * sway_dot(axis, turn)) +
+                sway_cross(lever, speed) + sway_cross(middle, push);
+
+    float reach = drag * (0.25f * joint.extent * joint.extent);
+    float across = joint.across + reach;
+    float excess = joint.along - across;
+    vec3 g = lever + middle * drag;
+    float mass = joint.mass + drag;
+    vec3 e = axis * excess;
+
+    sway_carry c;
+    c.b0 = vec4(0.0f, -g.z, g.y, spin.x);
+    c.b1 = vec4(g.z, 0.0f, -g.x, spin.y);
+    c.b2 = vec4(-g.y, g.x, 0.0f, spin.z);
+    c.p = vec4(momentum + push, 0.0f);
+    c.a = vec4(across + e.x * axis.x, e.x * axis.y, e.x * axis.z, across + e.y * axis.y);
+    c.ac = vec4(e.y * axis.z, across + e.z * axis.z, mass, 0.0f);
+    c.c = vec4(0.0f, mass, 0.0f, mass);
+    return c;
+}
+
+sway_carry sway_sum(sway_carry a, sway_carry b) {
+    a.b0 = a.b0 + b.b0;
+    a.b1 = a.b1 + b.b1;
+    a.b2 = a.b2 + b.b2;
+    a.p = a.p + b.p;
+    a.a = a.a + b.a;
+    a.ac = a.ac + b.ac;
+    a.c = a.c + b.c;
+    return a;
+}
+
+struct sway_parted {
+    sway_carry carry;
+    sway_gain gain;
+};
+
+// Takes the joint out of what segment and children are together: what is left of them as their
+// parent feels it, about the parent's base, and how the joint will answer.
+sway_parted sway_part(sway_joint joint, sway_carry sum, sway_rule rule, vec4 rotation, vec3 bend,
+                      vec4 parent_rotation) {
+    vec3 r = quaternion_rotate(parent_rotation, joint.offset);
+    vec3 b0 = vec3(sum.b0.x, sum.b0.y, sum.b0.z);
+    vec3 b1 = vec3(sum.b1.x, sum.b1.y, sum.b1.z);
+    vec3 b2 = vec3(sum.b2.x, sum.b2.y, sum.b2.z);
+    vec3 spin = vec3(sum.b0.w, sum.b1.w, sum.b2.w);
+    vec3 momentum = vec3(sum.p.x, sum.p.y, sum.p.z);
+
+    sway_sym a;
+    a.xx = sum.a.x;
+    a.xy = sum.a.y;
+    a.xz = sum.a.z;
+    a.yy = sum.a.w;
+    a.yz = sum.ac.x;
+    a.zz = sum.ac.y;
+    sway_sym d = a;
+    d.xx = a.xx + rule.hold;
+    d.yy = a.yy + rule.hold;
+    d.zz = a.zz + rule.hold;
+    sway_sym y = sway_inverse(d);
+    // Of y a = 1 - hold y the product loses nothing where the hold is large or small.
+    sway_sym give = sway_product(y, a);
+
+    // The bend turns about itself, so its axis in the world is that of either side of the joint.
+    vec3 torque = spin - quaternion_rotate(rotation, bend) * rule.spring;
+    vec3 free = sway_times(y, torque);
+    vec3 y0 = b0 * y.xx + b1 * y.xy + b2 * y.xz;
+    vec3 y1 = b0 * y.xy + b1 * y.yy + b2 * y.yz;
+    vec3 y2 = b0 * y.xz + b1 * y.yz + b2 * y.zz;
+
+    vec3 spin_left = spin - sway_times(give, torque);
+    vec3 left = momentum - (b0 * free.x + b1 * free.y + b2 * free.z);
+    vec3 c0 = vec3(sum.ac.z, sum.ac.w, sum.c.x) - (y0 * b0.x + y1 * b1.x + y2 * b2.x);
+    float cyy = sum.c.y - (b0.y * y0.y + b1.y * y1.y + b2.y * y2.y);
+    float cyz = sum.c.z - (b0.y * y0.z + b1.y * y1.z + b2.y * y2.z);
+    float czz = sum.c.w - (b0.z * y0.z + b1.z * y1.z + b2.z * y2.z);
+    vec3 c1 = vec3(c0.y, cyy, cyz);
+    vec3 c2 = vec3(c0.z, cyz, czz);
+
+    // About the parent's base: B' = B + [r] C and A' = A + [r] B^T + B' [r]^T.
+    vec3 h0 = y0 * rule.hold;
+    vec3 h1 = y1 * rule.hold;
+    vec3 h2 = y2 * rule.hold;
+    vec3 n0 = h0 + (c2 * r.y - c1 * r.z);
+    vec3 n1 = h1 + (c0 * r.z - c2 * r.x);
+    vec3 n2 = h2 + (c1 * r.x - c0 * r.y);
+    vec3 s0 = sway_cross(r, h0);
+    vec3 s1 = sway_cross(r, h1);
+    vec3 s2 = sway_cross(r, h2);
+    vec3 t0 = sway_cross(r, n0);
+    vec3 t1 = sway_cross(r, n1);
+    vec3 t2 = sway_cross(r, n2);
+    spin_left = spin_left + sway_cross(r, left);
+
+    sway_parted parted;
+    parted.carry.b0 = vec4(n0, spin_left.x);
+    parted.carry.b1 = vec4(n1, spin_left.y);
+    parted.carry.b2 = vec4(n2, spin_left.z);
+    parted.carry.p = vec4(left, 0.0f);
+    parted.carry.a = vec4(rule.hold * give.xx + (s0.x + t0.x), rule.hold * give.xy + (s1.x + t0.y),
+                          rule.hold * give.xz + (s2.x + t0.z), rule.hold * give.yy + (s1.y + t1.y));
+    parted.carry.ac = vec4(rule.hold * give.yz + (s2.y + t1.z),
+                           rule.hold * give.zz + (s2.z + t2.z), c0.x, c0.y);
+    parted.carry.c = vec4(c0.z, cyy, cyz, czz);
+    parted.gain.b0 = vec4(y0, free.x);
+    parted.gain.b1 = vec4(y1, free.y);
+    parted.gain.b2 = vec4(y2, free.z);
+    parted.gain.e = vec4(give.xx, give.xy, give.xz, give.yy);
+    parted.gain.er = vec4(give.yz, give.zz, 0.0f, 0.0f);
+    parted.gain.r = vec4(r, 0.0f);
+    return parted;
+}
+
+// Puts a segment where its bend and its parent say, and moves it with its rate. Nothing else of
+// `now` is read.
+sway_state sway_placed(sway_joint joint, sway_state parent, sway_state now) {
+    vec3 moved = quaternion_move(parent.rotation, joint.offset);
+    now.rotation = sway_rotated(parent.rotation, now.bend);
+    now.shift = parent.shift + moved;
+    now.turn = parent.turn + quaternion_rotate(parent.rotation, now.rate);
+    now.speed = parent.speed + sway_cross(parent.turn, joint.offset + moved);
+    return now;
+}
+
+// One step of a joint whose parent has made its own. `was` and `parent_was` are before the step.
+sway_state sway_stepped(sway_joint joint, sway_gain gain, sway_state was, vec4 parent_was,
+                        sway_state parent, sway_rule rule, float scale, float seconds) {
+    sway_sym give;
+    give.xx = gain.e.x;
+    give.xy = gain.e.y;
+    give.xz = gain.e.z;
+    give.yy = gain.e.w;
+    give.yz = gain.er.x;
+    give.zz = gain.er.y;
+    vec3 r = vec3(gain.r.x, gain.r.y, gain.r.z);
+    vec3 speed = parent.step_speed + sway_cross(parent.step_turn, r);
+    vec3 given = sway_times(give, parent.step_turn);
+    vec3 rate = vec3(
+        gain.b0.w - given.x - (gain.b0.x * speed.x + gain.b0.y * speed.y + gain.b0.z * speed.z),
+        gain.b1.w - given.y - (gain.b1.x * speed.x + gain.b1.y * speed.y + gain.b1.z * speed.z),
+        gain.b2.w - given.z - (gain.b2.x * speed.x + gain.b2.y * speed.y + gain.b2.z * speed.z));
+    vec3 turn = parent.step_turn + rate;
+
+    // From the mean over the step to its end.
+    float ahead = 1.0f / rule.weight;
+    vec3 mean = sway_back(parent_was, rate);
+    vec3 old_rate = was.rate * scale;
+    vec3 old_turn = was.turn * scale;
+    vec3 old_speed = was.speed * scale;
+    sway_state now = was;
+    now.bend = was.bend + mean * seconds;
+    now.rate = old_rate + (mean - old_rate) * ahead;
+    now.step_turn = turn;
+    now.step_speed = speed;
+    vec3 axis_was = quaternion_rotate(was.rotation, joint.axis);
+    now.before = sway_kinetic(joint, axis_was, old_turn + (turn - old_turn) * ahead,
+                              old_speed + (speed - old_speed) * ahead);
+    now = sway_placed(joint, parent, now);
+    now.after = sway_kinetic(joint, quaternion_rotate(now.rotation, joint.axis), now.turn,
+                             now.speed);
+    return now;
+}
+
+segment_pose sway_pose(sway_joint joint, sway_state state) {
+    segment_pose pose;
+    pose.rotation = state.rotation;
+    pose.base = joint.base;
+    pose.reserved0 = 0.0f;
+    pose.shift = state.shift;
+    pose.reserved1 = 0.0f;
+    return pose;
+}
+
+// The velocity of a segment's middle over the step that led from `was` to `now`.
+vec4 sway_velocity(sway_joint joint, vec4 was, sway_state now) {
+    vec3 middle = quaternion_rotate(was, joint.axis) * (0.5f * joint.extent);
+    return vec4(now.step_speed + sway_cross(now.step_turn, middle), 0.0f);
+}
+
+sway_energy sway_energy_of(sway_state state) {
+    sway_energy own;
+    own.before = state.before;
+    own.after = state.after;
+    own.scale = 1.0f;
+    own.reserved = 0.0f;
+    return own;
+}
+
+sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
+    a.before = a.before + b.before;
+    a.after = a.after + b.after;
+    return a;
+}
+
+// The scale that undoes what the change of pose did to the kinetic energy. Below 1e-30 J there is
+// no motion to speak of, and squares of it would leave the range of floats.
+float sway_scale(sway_energy tree) {
+    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
+    return moves ? sqrt(tree.before / tree.after) : 1.0f;
+}
+
+// Static equilibrium: what a segment hands to its parent, about the parent's base.
+struct sway_moment {
+    vec4 a;      // stiffness against turning: xx xy xz yy
+    vec4 ag;     // yz zz; the own part of it, and 0
+    vec4 force;  // N
+    vec4 moment; // N m
+};
+
+sway_moment sway_moment_sum(sway_moment a, sway_moment b) {
+    a.a = a.a + b.a;
+    a.ag = a.ag + b.ag;
+    a.force = a.force + b.force;
+    a.moment = a.moment + b.moment;
+    return a;
+}
+
+// How much a force that pulls at the end of a lever holds it back, N m/rad. A lever that turns
+// under a force f loses f . r of its moment; half of |f| |r| at least keeps Newton's method from
+// overshooting while it is still far off, and changes nothing of where it ends.
+float sway_hold(vec3 force, vec3 r) {
+    float least = 0.5f * sqrt(sway_dot(force, force) * sway_dot(r, r));
+    return max(sway_dot(force, r), least);
+}
+
+// The load of a segment alone.
+sway_moment sway_pull(sway_joint joint, vec4 rotation, segment_load load) {
+    vec3 middle = quaternion_rotate(rotation, joint.axis) * (0.5f * joint.extent);
+    sway_moment m;
+    m.a = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    m.ag = vec4(0.0f, 0.0f, sway_hold(load.force, middle), 0.0f);
+    m.force = vec4(load.force, 0.0f);
+    m.moment = vec4(sway_cross(middle, load.force), 0.0f);
+    return m;
+}
+
+struct sway_balanced {
+    sway_moment carry;
+    sway_gain gain;
+};
+
+// One step of Newton's method at a joint, of sway_part's form: A is the stiffness that the forces
+// give to the segments' turns, the joint's own stiffness stands for the hold.
+sway_balanced sway_balance(sway_joint joint, sway_moment sum, vec4 rotation, vec3 bend,
+                           vec4 parent_rotation) {
+    vec3 r = quaternion_rotate(parent_rotation, joint.offset);
+    vec3 moment = vec3(sum.moment.x, sum.moment.y, sum.moment.z);
+    vec3 force = vec3(sum.force.x, sum.force.y, sum.force.z);
+    sway_sym a;
+    a.xx = sum.a.x + sum.ag.z;
+    a.xy = sum.a.y;
+    a.xz = sum.a.z;
+    a.yy = sum.a.w + sum.ag.z;
+    a.yz = sum.ag.x;
+    a.zz = sum.ag.y + sum.ag.z;
+    sway_sym d = a;
+    d.xx = a.xx + joint.stiffness;
+    d.yy = a.yy + joint.stiffness;
+    d.zz = a.zz + joint.stiffness;
+    sway_sym y = sway_inverse(d);
+    sway_sym give = sway_product(y, a);
+    vec3 torque = moment - quaternion_rotate(rotation, bend) * joint.stiffness;
+    vec3 free = sway_times(y, torque);
+    vec3 left = moment - sway_times(give, torque) + sway_cross(r, force);
+
+    float k = joint.stiffness;
+    sway_balanced b;
+    b.carry.a = vec4(k * give.xx, k * give.xy, k * give.xz, k * give.yy);
+    b.carry.ag = vec4(k * give.yz, k * give.zz, sway_hold(force, r), 0.0f);
+    b.carry.force = sum.force;
+    b.carry.moment = vec4(left, 0.0f);
+    b.gain.b0 = vec4(0.0f, 0.0f, 0.0f, free.x);
+    b.gain.b1 = vec4(0.0f, 0.0f, 0.0f, free.y);
+    b.gain.b2 = vec4(0.0f, 0.0f, 0.0f, free.z);
+    b.gain.e = vec4(give.xx, give.xy, give.xz, give.yy);
+    b.gain.er = vec4(give.yz, give.zz, 0.0f, 0.0f);
+    b.gain.r = vec4(r, 0.0f);
+    return b;
+}
+
+// The paper's turn: the part of the summed force across the segment, on a lever as long as the
+// segment. As a gain whose joint turns by it whatever its parent does.
+sway_gain sway_paper_gain(sway_joint joint, vec3 force, vec4 rotation, vec3 bend) {
+    vec3 axis = quaternion_rotate(rotation, joint.axis);
+    vec3 turn = sway_cross(axis, force) * (joint.extent / joint.stiffness);
+    vec3 free = turn - quaternion_rotate(rotation, bend);
+    sway_gain g;
+    g.b0 = vec4(0.0f, 0.0f, 0.0f, free.x);
+    g.b1 = vec4(0.0f, 0.0f, 0.0f, free.y);
+    g.b2 = vec4(0.0f, 0.0f, 0.0f, free.z);
+    g.e = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    g.er = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    g.r = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    return g;
+}
+
+// Turns a joint by a gain, without inertia. `step_turn` is by how much its parent has turned.
+sway_state sway_turned(sway_joint joint, sway_gain gain, sway_state was, vec4 parent_was,
+                       sway_state parent) {
+    sway_sym give;
+    give.xx = gain.e.x;
+    give.xy = gain.e.y;
+    give.xz = gain.e.z;
+    give.yy = gain.e.w;
+    give.yz = gain.er.x;
+    give.zz = gain.er.y;
+    vec3 turn = vec3(gain.b0.w, gain.b1.w, gain.b2.w) - sway_times(give, parent.step_turn);
+    sway_state now = was;
+    now.bend = was.bend + sway_back(parent_was, turn);
+    now.step_turn = parent.step_turn + turn;
+    now.step_speed = vec3(0.0f, 0.0f, 0.0f);
+    now = sway_placed(joint, parent, now);
+    now.before = 0.0f;
+    now.after = 0.0f;
+    return now;
+}
