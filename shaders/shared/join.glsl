@@ -1,0 +1,58 @@
+// Where a branch leaves another, and where it ends: the vertices that close its surface.
+#include "branch.glsl"
+
+// A vertex on the surface of a branch, bound to a triangle of its tube: (a, b, c) with weights that
+// add up to 1. Such a vertex stays on the triangle whatever the pose.
+struct join_point {
+    uint a;
+    uint b;
+    uint c;
+    uint child; // 2 * (vertex of the child's first ring), + 1 for the child's texture coordinates
+    float at_a;
+    float at_b;
+    float at_c;
+    float turn; // added to u: whole turns about the parent
+};
+
+// The vertex that a join_point without a child is: one of the tube's own, a turn further on.
+surface_vertex join_turned(join_point p, surface_vertex a) {
+    a.u = a.u + p.turn;
+    return a;
+}
+
+// A vertex of the loop along which the surfaces of a branch and its child meet. Position and normal
+// depend on neither of the two texture coordinates that it is made with; the normal is half way
+// between the two surfaces'. There is no one direction of growing u, so tangent.w is 0.
+surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, surface_vertex c,
+                           surface_vertex child) {
+    surface_vertex vertex;
+    vertex.position = (a.position * p.at_a + b.position * p.at_b) + c.position * p.at_c;
+    vec3 outward = unit_or((a.normal * p.at_a + b.normal * p.at_b) + c.normal * p.at_c, a.normal);
+    vertex.normal = unit_or(outward + child.normal, outward);
+    vertex.u = ((a.u * p.at_a + b.u * p.at_b) + c.u * p.at_c) + p.turn;
+    vertex.v = (a.v * p.at_a + b.v * p.at_b) + c.v * p.at_c;
+    vec4 along = (a.tangent * p.at_a + b.tangent * p.at_b) + c.tangent * p.at_c;
+    vec3 first = vec3(a.tangent.x, a.tangent.y, a.tangent.z);
+    vec3 tangent = unit_or(vec3(along.x, along.y, along.z), first);
+    vertex.tangent = vec4(tangent.x, tangent.y, tangent.z, 0.0f);
+    if ((p.child & 1u) != 0u) {
+        vec3 up = child.position - vertex.position;
+        vertex.u = child.u;
+        vertex.v = child.v - sqrt(dot3(up, up));
+        vertex.tangent = vec4(child.tangent.x, child.tangent.y, child.tangent.z, 0.0f);
+    }
+    return vertex;
+}
+
+// The point of the dome that closes a branch, as one of the `sides` triangles about it sees it:
+// half a radius above the ring at the tip, in the ring's plane at the base.
+surface_vertex tip_vertex(branch_end e, vec4 corner, uint sides, bool base) {
+    branch_ring ring = branch_ring_at_end(e);
+    surface_vertex vertex = branch_vertex(ring, corner);
+    vertex.position = ring.centre + ring.y * (base ? 0.0f : 0.5f * ring.radius);
+    vertex.normal = base ? ring.y * -1.0f : ring.y;
+    vertex.u = corner.z + 0.5f / float(sides);
+    vertex.v = base ? ring.path - ring.radius : ring.path + ring.radius;
+    vertex.tangent = vec4(vertex.tangent.x, vertex.tangent.y, vertex.tangent.z, 0.0f);
+    return vertex;
+}
