@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 272af14e8b4f9b84f1f46c98e720bfcf47d8b1a04177fb3ae5dddb811a1a113d
+// sha256 5fe41430f8e568ba24cafc38e07fe98da88a53d61c9b8857ca1fbfe0b3f67d9d
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -33,8 +33,18 @@ struct segment_detail {
 struct chain_share {
     float rank;
     float least;
-    float reserved0;
-    float reserved1;
+    uint chain; // of those that lie here
+    uint place; // in the chain, from 0
+};
+
+// Ends in a row, each joined to the next, and how long the pieces are that they are drawn in: every
+// `stride`-th end is there, and the last. Every other of these may be on its way to the curve
+// between its neighbours.
+struct chain_detail {
+    uint last;      // index of an end
+    uint caps;      // of the last segment
+    uint stride;    // a power of two
+    float fraction; // how far the ends that are on their way have still to go: 1 at their own places
 };
 
 // 1 - cos(pi / n): how far the sides of a polygon stay inside its circle.
@@ -154,6 +164,47 @@ inline uint least_factor(uint n) {
         p = p + 1u;
     }
     return n;
+}
+
+// The end that a curve from a to b would have where `own` is.
+inline branch_end end_between(branch_end a, branch_end b, branch_end own) {
+    float l = b.path - a.path;
+    float t = l > 0.0f ? clamp((own.path - a.path) / l, 0.0f, 1.0f) : 0.5f;
+    branch_curve c = branch_curve_between(a, b);
+    branch_end e = own;
+    e.position = hermite_point(c.p1, c.n1, c.p2, c.n2, t);
+    e.radius = a.radius * (1.0f - t) + b.radius * t;
+    e.orientation = slerp(a.orientation, b.orientation, t);
+    e.slope = a.slope * (1.0f - t) + b.slope * t;
+    return e;
+}
+
+// How far an end's ring would move to that place.
+inline float way_between(branch_end a, branch_end b, branch_end own) {
+    branch_end e = end_between(a, b, own);
+    vec3 way = e.position - own.position;
+    return sqrt(dot3(way, way)) + abs(e.radius - own.radius);
+}
+
+// An end on its way there.
+inline branch_end end_on_its_way(branch_end a, branch_end b, branch_end own, float fraction) {
+    branch_end e = end_between(a, b, own);
+    e.position = e.position * (1.0f - fraction) + own.position * fraction;
+    e.radius = e.radius * (1.0f - fraction) + own.radius * fraction;
+    e.orientation = slerp(e.orientation, own.orientation, fraction);
+    e.slope = e.slope * (1.0f - fraction) + own.slope * fraction;
+    return e;
+}
+
+// The segment that is drawn where `s` is: up to the next end that is there.
+inline branch_segment merged_segment(branch_segment s, chain_detail chain) {
+    branch_segment m = s;
+    m.end = min(s.start + chain.stride, chain.last);
+    m.caps = (s.caps & 1u) | (m.end == chain.last ? chain.caps & 2u : 0u);
+    return m;
+}
+inline bool is_merged_away(chain_share start, chain_detail chain) {
+    return start.place % chain.stride != 0u;
 }
 
 // What a segment is made of, for ends whose radii have been scaled.

@@ -7,11 +7,13 @@
 //
 // The device chooses, every time anew: sides and rings by how far the surface would be off in
 // pixels, and how many of the branches that are thinner than a pixel are worth drawing, the others
-// widened in their place (Cook, Halstead, Planck and Ryu 2007). All of it is continuous in the
-// camera's place: nothing appears or goes away but where it has no size.
+// widened in their place (Cook, Halstead, Planck and Ryu 2007); segments in a row become one where
+// that is close enough. All of it is continuous in the camera's place: nothing appears or goes away
+// but where it has no size, or is where it would be without.
 
 #include <skybark/core/backend.hpp>
 #include <skybark/kernels/detailed_branch.hpp>
+#include <skybark/kernels/merge_ends.hpp>
 #include <skybark/kernels/pose_ends.hpp>
 #include <skybark/kernels/unit_polygon.hpp>
 #include <skybark/trees/branch_layout.hpp>
@@ -19,6 +21,7 @@
 #include <skybark/trees/view_detail.hpp>
 
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 
 namespace skybark::trees {
@@ -69,7 +72,7 @@ struct skeleton_chain {
         place = thickest ? 0 : place + 1;
         // A cut of 3/2 leaves nothing out. The n-th thickest stands for n chains at most.
         of_chain[order[k]] = {detail::golden_rank(place), 1.5f / static_cast<float>(place + 1), 0,
-                              0};
+                              0}; // its place is the mesh's own
     }
     std::vector<kernels::chain_share> shares(layout.ends.size());
     for (std::uint32_t i = 0; i < from.size(); ++i) {
@@ -102,6 +105,7 @@ struct made_triangles {
 /// asks for. In full detail it is the list of a `branch_mesh` with the same sides and rings.
 template <backend B>
 requires maps<B, kernels::pose_ends> && maps<B, kernels::branch_detail> &&
+    maps<B, kernels::merge_chains> && maps<B, kernels::merge_ends> &&
     maps<B, kernels::segment_rings> && expands<B, kernels::detailed_branch>
 class detailed_branch_mesh {
   public:
@@ -114,13 +118,18 @@ class detailed_branch_mesh {
         buffer rest;     ///< branch_end
         buffer carriers; ///< end_carrier
         buffer shares;   ///< chain_share
+        buffer chains;   ///< end_chain
         buffer now;      ///< branch_end, posed
+        buffer pieces;   ///< chain_detail
+        buffer merged;   ///< branch_end, that are drawn
         buffer details;  ///< end_detail
+        buffer drawn;    ///< branch_segment
         buffer rings;    ///< segment_detail
         buffer vertices; ///< surface_vertex; room for `triangles`
         buffer count;    ///< one count_record
         std::uint32_t elements = 0;
         std::uint32_t ends = 0;
+        std::uint32_t runs = 0; ///< chains
         std::uint32_t triangles = 0;
         std::uint32_t most = 0; ///< triangles in full detail
     };
@@ -279,13 +288,19 @@ class detailed_branch_mesh {
         const float error = full ? 0 : seen_from.error;
         const float thin = full ? 0 : seen_from.thin;
         const std::uint32_t fewest = tube_.fewest_sides;
+        to.map(kernels::merge_chains{camera, error},
+               {view<B>(p.chains), view<B>(ends), view<B>(p.pieces)}, range{0, p.runs});
+        to.map(kernels::merge_ends{},
+               {view<B>(ends), view<B>(p.shares), view<B>(p.pieces), view<B>(p.merged)},
+               range{0, p.ends});
         to.map(kernels::branch_detail{camera, error, thin, fewest, options_.sides},
-               {view<B>(ends), view<B>(p.shares), view<B>(p.details)}, range{0, p.ends});
+               {view<B>(p.merged), view<B>(p.shares), view<B>(p.details)}, range{0, p.ends});
         to.map(kernels::segment_rings{camera.w, error, fewest, options_.sides, options_.rings - 1},
-               {view<B>(p.segments), view<B>(ends), view<B>(p.details), view<B>(p.rings)},
+               {view<B>(p.segments), view<B>(p.merged), view<B>(p.shares), view<B>(p.pieces),
+                view<B>(p.details), view<B>(p.drawn), view<B>(p.rings)},
                range{0, p.elements});
         to.expand(tube_,
-                  {view<B>(p.segments), view<B>(ends), view<B>(*corners_), view<B>(p.details),
+                  {view<B>(p.drawn), view<B>(p.merged), view<B>(*corners_), view<B>(p.details),
                    view<B>(p.rings)},
                   range{0, p.elements},
                   triangle_list<B>{view<B>(p.vertices), view<B>(p.count), options_.policy});
@@ -340,34 +355,52 @@ class detailed_branch_mesh {
         return triangles;
     }
 
-    /// What a part sends to the device: its ends numbered from 0 on.
+    /// What a part sends to the device: its ends numbered from 0 on, chain by chain.
     struct part_data {
         std::vector<branch_segment> segments;
         std::vector<branch_end> ends;
         std::vector<end_carrier> carriers;
         std::vector<kernels::chain_share> shares;
+        std::vector<kernels::end_chain> chains;
     };
 
     [[nodiscard]] static part_data data_of(const branch_layout& layout,
                                            std::span<const kernels::chain_share> shares,
                                            std::uint64_t first, std::uint64_t count) {
+        // Chains as these segments have them, each a list of segments.
+        std::vector<std::vector<std::uint32_t>> chains;
+        std::unordered_map<std::uint32_t, std::size_t> chain_to; // by the end that it has reached
+        for (std::uint64_t i = first; i < first + count; ++i) {
+            const branch_segment& s = layout.segments[i];
+            const auto found = chain_to.find(s.start);
+            const std::size_t chain = found != chain_to.end() ? found->second : chains.size();
+            if (found != chain_to.end()) {
+                chain_to.erase(found);
+            } else {
+                chains.emplace_back();
+            }
+            chains[chain].push_back(static_cast<std::uint32_t>(i));
+            chain_to.emplace(s.end, chain);
+        }
         part_data data;
-        std::unordered_map<std::uint32_t, std::uint32_t> numbers;
-        const auto number = [&](std::uint32_t end) {
-            const auto next = static_cast<std::uint32_t>(data.ends.size());
-            const auto [place, added] = numbers.try_emplace(end, next);
-            if (added) {
+        data.segments.resize(count);
+        for (const std::vector<std::uint32_t>& chain : chains) {
+            const auto base = static_cast<std::uint32_t>(data.ends.size());
+            const auto add = [&](std::uint32_t end) {
+                const auto place = static_cast<std::uint32_t>(data.ends.size()) - base;
                 data.ends.push_back(layout.ends[end]);
                 data.carriers.push_back(layout.carriers[end]);
-                data.shares.push_back(shares[end]);
+                data.shares.push_back({shares[end].rank, shares[end].least,
+                                       static_cast<std::uint32_t>(data.chains.size()), place});
+                return base + place;
+            };
+            std::uint32_t end = add(layout.segments[chain.front()].start);
+            for (const std::uint32_t i : chain) {
+                const std::uint32_t start = end;
+                end = add(layout.segments[i].end);
+                data.segments[i - first] = {start, end, layout.segments[i].caps, 0};
             }
-            return place->second;
-        };
-        for (std::uint64_t i = first; i < first + count; ++i) {
-            branch_segment s = layout.segments[i];
-            s.start = number(s.start);
-            s.end = number(s.end);
-            data.segments.push_back(s);
+            data.chains.push_back({base, end, layout.segments[chain.back()].caps, 0});
         }
         return data;
     }
@@ -384,13 +417,17 @@ class detailed_branch_mesh {
                 (options_.room * count + layout.segments.size() - 1) / layout.segments.size();
             room = std::min(most, share);
         }
-        std::array<result<buffer>, 9> made{
+        std::array<result<buffer>, 13> made{
             make_buffer<B, branch_segment>(device, data.segments),
             make_buffer<B, branch_end>(device, data.ends),
             make_buffer<B, end_carrier>(device, data.carriers),
             make_buffer<B, kernels::chain_share>(device, data.shares),
+            make_buffer<B, kernels::end_chain>(device, data.chains),
+            device.create_buffer(data.ends.size() * sizeof(branch_end)),
+            device.create_buffer(data.chains.size() * sizeof(kernels::chain_detail)),
             device.create_buffer(data.ends.size() * sizeof(branch_end)),
             device.create_buffer(data.ends.size() * sizeof(kernels::end_detail)),
+            device.create_buffer(count * sizeof(branch_segment)),
             device.create_buffer(count * sizeof(kernels::segment_detail)),
             device.create_buffer(bytes_of(room)),
             device.create_buffer(sizeof(count_record))};
@@ -402,8 +439,10 @@ class detailed_branch_mesh {
         parts_.push_back({std::move(*made[0]), std::move(*made[1]), std::move(*made[2]),
                           std::move(*made[3]), std::move(*made[4]), std::move(*made[5]),
                           std::move(*made[6]), std::move(*made[7]), std::move(*made[8]),
-                          static_cast<std::uint32_t>(count),
+                          std::move(*made[9]), std::move(*made[10]), std::move(*made[11]),
+                          std::move(*made[12]), static_cast<std::uint32_t>(count),
                           static_cast<std::uint32_t>(data.ends.size()),
+                          static_cast<std::uint32_t>(data.chains.size()),
                           static_cast<std::uint32_t>(room), static_cast<std::uint32_t>(most)});
         return {};
     }

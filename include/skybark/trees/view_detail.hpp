@@ -19,7 +19,7 @@ struct view_detail {
     glm::vec3 camera{0};         ///< m
     float pixels_per_radian = 0; ///< 0: everything in full detail
     float error = 0.25f;         ///< pixels a surface may be off by; 0: all sides and rings
-    float thin = 0.25f;          ///< pixels: thinner radii are thinned out; 0: none are
+    float thin = 0.0625f;        ///< pixels: thinner radii are thinned out; 0: none are
 };
 
 /// Whether a view means anything but full detail.

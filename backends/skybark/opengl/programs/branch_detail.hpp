@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f36b2235369cf530c4589f5135fa9b39ab8c5aabeda7732afa9078137a21c8f6
+// sha256 fe5f6c1d5f4bc63bd5138944995fa9facaa51a3fce7ae104f6849cadd3913a65
 #pragma once
 
 #include <skybark/kernels/branch_detail.hpp>
@@ -313,8 +313,14 @@ struct segment_detail {
 struct chain_share {
     float rank;
     float least;
-    float reserved0;
-    float reserved1;
+    uint chain; // of those that lie here
+    uint place; // in the chain, from 0
+};
+struct chain_detail {
+    uint last;      // index of an end
+    uint caps;      // of the last segment
+    uint stride;    // a power of two
+    float fraction; // how far the ends that are on their way have still to go: 1 at their own places
 };
 float versine(uint n) {
     float s = sin_quarter(1.57079633f / float(n));
@@ -405,6 +411,39 @@ uint least_factor(uint n) {
         p = p + 1u;
     }
     return n;
+}
+branch_end end_between(branch_end a, branch_end b, branch_end own) {
+    float l = b.path - a.path;
+    float t = l > 0.0f ? clamp((own.path - a.path) / l, 0.0f, 1.0f) : 0.5f;
+    branch_curve c = branch_curve_between(a, b);
+    branch_end e = own;
+    e.position = hermite_point(c.p1, c.n1, c.p2, c.n2, t);
+    e.radius = a.radius * (1.0f - t) + b.radius * t;
+    e.orientation = slerp(a.orientation, b.orientation, t);
+    e.slope = a.slope * (1.0f - t) + b.slope * t;
+    return e;
+}
+float way_between(branch_end a, branch_end b, branch_end own) {
+    branch_end e = end_between(a, b, own);
+    vec3 way = e.position - own.position;
+    return sqrt(dot3(way, way)) + abs(e.radius - own.radius);
+}
+branch_end end_on_its_way(branch_end a, branch_end b, branch_end own, float fraction) {
+    branch_end e = end_between(a, b, own);
+    e.position = e.position * (1.0f - fraction) + own.position * fraction;
+    e.radius = e.radius * (1.0f - fraction) + own.radius * fraction;
+    e.orientation = slerp(e.orientation, own.orientation, fraction);
+    e.slope = e.slope * (1.0f - fraction) + own.slope * fraction;
+    return e;
+}
+branch_segment merged_segment(branch_segment s, chain_detail chain) {
+    branch_segment m = s;
+    m.end = min(s.start + chain.stride, chain.last);
+    m.caps = (s.caps & 1u) | (m.end == chain.last ? chain.caps & 2u : 0u);
+    return m;
+}
+bool is_merged_away(chain_share start, chain_detail chain) {
+    return start.place % chain.stride != 0u;
 }
 segment_detail detail_of_segment(branch_segment s, branch_end a, branch_end b, end_detail da,
                                  end_detail db, float pixels_per_radian, float error, uint least,
@@ -526,11 +565,11 @@ surface_vertex between_vertices(surface_vertex own, surface_vertex before, surfa
     return v;
 }
 layout(std430, binding = 0) readonly buffer ends_buffer { branch_end ends[]; };
-layout(std430, binding = 1) readonly buffer shares_buffer { vec4 shares[]; };
+layout(std430, binding = 1) readonly buffer shares_buffer { uvec4 shares[]; };
 layout(std430, binding = 2) writeonly buffer details_buffer { vec4 details[]; };
 void kernel_map(uint i) {
-    vec4 s = shares[i];
-    chain_share share = chain_share(s.x, s.y, s.z, s.w);
+    uvec4 s = shares[i];
+    chain_share share = chain_share(uintBitsToFloat(s.x), uintBitsToFloat(s.y), s.z, s.w);
     end_detail d = detail_of_end(ends[i], share, camera, error, thin, fewest_sides, sides);
     details[i] = vec4(d.sides, d.scale, d.distance, d.errors);
 }
@@ -852,8 +891,14 @@ struct segment_detail {
 struct chain_share {
     float rank;
     float least;
-    float reserved0;
-    float reserved1;
+    uint chain; // of those that lie here
+    uint place; // in the chain, from 0
+};
+struct chain_detail {
+    uint last;      // index of an end
+    uint caps;      // of the last segment
+    uint stride;    // a power of two
+    float fraction; // how far the ends that are on their way have still to go: 1 at their own places
 };
 float versine(uint n) {
     float s = sin_quarter(1.57079633f / float(n));
@@ -944,6 +989,39 @@ uint least_factor(uint n) {
         p = p + 1u;
     }
     return n;
+}
+branch_end end_between(branch_end a, branch_end b, branch_end own) {
+    float l = b.path - a.path;
+    float t = l > 0.0f ? clamp((own.path - a.path) / l, 0.0f, 1.0f) : 0.5f;
+    branch_curve c = branch_curve_between(a, b);
+    branch_end e = own;
+    e.position = hermite_point(c.p1, c.n1, c.p2, c.n2, t);
+    e.radius = a.radius * (1.0f - t) + b.radius * t;
+    e.orientation = slerp(a.orientation, b.orientation, t);
+    e.slope = a.slope * (1.0f - t) + b.slope * t;
+    return e;
+}
+float way_between(branch_end a, branch_end b, branch_end own) {
+    branch_end e = end_between(a, b, own);
+    vec3 way = e.position - own.position;
+    return sqrt(dot3(way, way)) + abs(e.radius - own.radius);
+}
+branch_end end_on_its_way(branch_end a, branch_end b, branch_end own, float fraction) {
+    branch_end e = end_between(a, b, own);
+    e.position = e.position * (1.0f - fraction) + own.position * fraction;
+    e.radius = e.radius * (1.0f - fraction) + own.radius * fraction;
+    e.orientation = slerp(e.orientation, own.orientation, fraction);
+    e.slope = e.slope * (1.0f - fraction) + own.slope * fraction;
+    return e;
+}
+branch_segment merged_segment(branch_segment s, chain_detail chain) {
+    branch_segment m = s;
+    m.end = min(s.start + chain.stride, chain.last);
+    m.caps = (s.caps & 1u) | (m.end == chain.last ? chain.caps & 2u : 0u);
+    return m;
+}
+bool is_merged_away(chain_share start, chain_detail chain) {
+    return start.place % chain.stride != 0u;
 }
 segment_detail detail_of_segment(branch_segment s, branch_end a, branch_end b, end_detail da,
                                  end_detail db, float pixels_per_radian, float error, uint least,
@@ -1065,11 +1143,11 @@ surface_vertex between_vertices(surface_vertex own, surface_vertex before, surfa
     return v;
 }
 layout(std430, binding = 0) readonly buffer ends_buffer { branch_end ends[]; };
-layout(std430, binding = 1) readonly buffer shares_buffer { vec4 shares[]; };
+layout(std430, binding = 1) readonly buffer shares_buffer { uvec4 shares[]; };
 layout(std430, binding = 2) writeonly buffer details_buffer { vec4 details[]; };
 void kernel_map(uint i) {
-    vec4 s = shares[i];
-    chain_share share = chain_share(s.x, s.y, s.z, s.w);
+    uvec4 s = shares[i];
+    chain_share share = chain_share(uintBitsToFloat(s.x), uintBitsToFloat(s.y), s.z, s.w);
     end_detail d = detail_of_end(ends[i], share, camera, error, thin, fewest_sides, sides);
     details[i] = vec4(d.sides, d.scale, d.distance, d.errors);
 }

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0bbe637fac443b9787552d30414e9bd530d2e28c66cb3a6071887f692b4ae461
+// sha256 3a2fe9e8b4b5e0860051c9276c1c88a6ed4e10a8a860204791b755cbb9422870
 #pragma once
 
 #include <skybark/kernels/detailed_branch.hpp>
@@ -319,8 +319,14 @@ struct segment_detail {
 struct chain_share {
     float rank;
     float least;
-    float reserved0;
-    float reserved1;
+    uint chain; // of those that lie here
+    uint place; // in the chain, from 0
+};
+struct chain_detail {
+    uint last;      // index of an end
+    uint caps;      // of the last segment
+    uint stride;    // a power of two
+    float fraction; // how far the ends that are on their way have still to go: 1 at their own places
 };
 float versine(uint n) {
     float s = sin_quarter(1.57079633f / float(n));
@@ -411,6 +417,39 @@ uint least_factor(uint n) {
         p = p + 1u;
     }
     return n;
+}
+branch_end end_between(branch_end a, branch_end b, branch_end own) {
+    float l = b.path - a.path;
+    float t = l > 0.0f ? clamp((own.path - a.path) / l, 0.0f, 1.0f) : 0.5f;
+    branch_curve c = branch_curve_between(a, b);
+    branch_end e = own;
+    e.position = hermite_point(c.p1, c.n1, c.p2, c.n2, t);
+    e.radius = a.radius * (1.0f - t) + b.radius * t;
+    e.orientation = slerp(a.orientation, b.orientation, t);
+    e.slope = a.slope * (1.0f - t) + b.slope * t;
+    return e;
+}
+float way_between(branch_end a, branch_end b, branch_end own) {
+    branch_end e = end_between(a, b, own);
+    vec3 way = e.position - own.position;
+    return sqrt(dot3(way, way)) + abs(e.radius - own.radius);
+}
+branch_end end_on_its_way(branch_end a, branch_end b, branch_end own, float fraction) {
+    branch_end e = end_between(a, b, own);
+    e.position = e.position * (1.0f - fraction) + own.position * fraction;
+    e.radius = e.radius * (1.0f - fraction) + own.radius * fraction;
+    e.orientation = slerp(e.orientation, own.orientation, fraction);
+    e.slope = e.slope * (1.0f - fraction) + own.slope * fraction;
+    return e;
+}
+branch_segment merged_segment(branch_segment s, chain_detail chain) {
+    branch_segment m = s;
+    m.end = min(s.start + chain.stride, chain.last);
+    m.caps = (s.caps & 1u) | (m.end == chain.last ? chain.caps & 2u : 0u);
+    return m;
+}
+bool is_merged_away(chain_share start, chain_detail chain) {
+    return start.place % chain.stride != 0u;
 }
 segment_detail detail_of_segment(branch_segment s, branch_end a, branch_end b, end_detail da,
                                  end_detail db, float pixels_per_radian, float error, uint least,

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 8cf3a7145ff17ddbb1aa0effcad1136dc2417d7eb002cde8dba31f8cc08009c2
+// sha256 9d1bf2a9eaa0f3c281799c06f3c085c440e0bae451ae9c9ef60ca227ef9de632
 #pragma once
 
 #include <skybark/kernels/segment_rings.hpp>
@@ -313,8 +313,14 @@ struct segment_detail {
 struct chain_share {
     float rank;
     float least;
-    float reserved0;
-    float reserved1;
+    uint chain; // of those that lie here
+    uint place; // in the chain, from 0
+};
+struct chain_detail {
+    uint last;      // index of an end
+    uint caps;      // of the last segment
+    uint stride;    // a power of two
+    float fraction; // how far the ends that are on their way have still to go: 1 at their own places
 };
 float versine(uint n) {
     float s = sin_quarter(1.57079633f / float(n));
@@ -405,6 +411,39 @@ uint least_factor(uint n) {
         p = p + 1u;
     }
     return n;
+}
+branch_end end_between(branch_end a, branch_end b, branch_end own) {
+    float l = b.path - a.path;
+    float t = l > 0.0f ? clamp((own.path - a.path) / l, 0.0f, 1.0f) : 0.5f;
+    branch_curve c = branch_curve_between(a, b);
+    branch_end e = own;
+    e.position = hermite_point(c.p1, c.n1, c.p2, c.n2, t);
+    e.radius = a.radius * (1.0f - t) + b.radius * t;
+    e.orientation = slerp(a.orientation, b.orientation, t);
+    e.slope = a.slope * (1.0f - t) + b.slope * t;
+    return e;
+}
+float way_between(branch_end a, branch_end b, branch_end own) {
+    branch_end e = end_between(a, b, own);
+    vec3 way = e.position - own.position;
+    return sqrt(dot3(way, way)) + abs(e.radius - own.radius);
+}
+branch_end end_on_its_way(branch_end a, branch_end b, branch_end own, float fraction) {
+    branch_end e = end_between(a, b, own);
+    e.position = e.position * (1.0f - fraction) + own.position * fraction;
+    e.radius = e.radius * (1.0f - fraction) + own.radius * fraction;
+    e.orientation = slerp(e.orientation, own.orientation, fraction);
+    e.slope = e.slope * (1.0f - fraction) + own.slope * fraction;
+    return e;
+}
+branch_segment merged_segment(branch_segment s, chain_detail chain) {
+    branch_segment m = s;
+    m.end = min(s.start + chain.stride, chain.last);
+    m.caps = (s.caps & 1u) | (m.end == chain.last ? chain.caps & 2u : 0u);
+    return m;
+}
+bool is_merged_away(chain_share start, chain_detail chain) {
+    return start.place % chain.stride != 0u;
 }
 segment_detail detail_of_segment(branch_segment s, branch_end a, branch_end b, end_detail da,
                                  end_detail db, float pixels_per_radian, float error, uint least,
@@ -527,23 +566,36 @@ surface_vertex between_vertices(surface_vertex own, surface_vertex before, surfa
 }
 layout(std430, binding = 0) readonly buffer segments_buffer { branch_segment segments[]; };
 layout(std430, binding = 1) readonly buffer ends_buffer { branch_end ends[]; };
-layout(std430, binding = 2) readonly buffer details_buffer { vec4 details[]; };
-layout(std430, binding = 3) writeonly buffer rings_buffer { uvec4 made_of[]; };
+layout(std430, binding = 2) readonly buffer shares_buffer { uvec4 shares[]; };
+layout(std430, binding = 3) readonly buffer chains_buffer { uvec4 chains[]; };
+layout(std430, binding = 4) readonly buffer details_buffer { vec4 details[]; };
+layout(std430, binding = 5) writeonly buffer merged_buffer { branch_segment merged[]; };
+layout(std430, binding = 6) writeonly buffer rings_buffer { uvec4 made_of[]; };
 end_detail detail_at(uint end) {
     vec4 d = details[end];
     return end_detail(d.x, d.y, d.z, d.w);
 }
 void kernel_map(uint i) {
     branch_segment s = segments[i];
-    branch_end a = ends[s.start];
-    branch_end b = ends[s.end];
-    end_detail da = detail_at(s.start);
-    end_detail db = detail_at(s.end);
-    a.radius = a.radius * da.scale;
-    b.radius = b.radius * db.scale;
-    segment_detail d = detail_of_segment(s, a, b, da, db, pixels_per_radian, error, fewest_sides,
-                                         sides, gaps);
-    made_of[i] = uvec4(d.sides, d.gaps, floatBitsToUint(d.fraction), d.caps);
+    uvec4 p = shares[s.start];
+    chain_share place = chain_share(uintBitsToFloat(p.x), uintBitsToFloat(p.y), p.z, p.w);
+    uvec4 c = chains[place.chain];
+    chain_detail chain = chain_detail(c.x, c.y, c.z, uintBitsToFloat(c.w));
+    uvec4 made = uvec4(0u);
+    if (!is_merged_away(place, chain)) {
+        s = merged_segment(s, chain);
+        branch_end a = ends[s.start];
+        branch_end b = ends[s.end];
+        end_detail da = detail_at(s.start);
+        end_detail db = detail_at(s.end);
+        a.radius = a.radius * da.scale;
+        b.radius = b.radius * db.scale;
+        segment_detail d = detail_of_segment(s, a, b, da, db, pixels_per_radian, error,
+                                             fewest_sides, sides, gaps);
+        made = uvec4(d.sides, d.gaps, floatBitsToUint(d.fraction), d.caps);
+    }
+    merged[i] = s;
+    made_of[i] = made;
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
@@ -863,8 +915,14 @@ struct segment_detail {
 struct chain_share {
     float rank;
     float least;
-    float reserved0;
-    float reserved1;
+    uint chain; // of those that lie here
+    uint place; // in the chain, from 0
+};
+struct chain_detail {
+    uint last;      // index of an end
+    uint caps;      // of the last segment
+    uint stride;    // a power of two
+    float fraction; // how far the ends that are on their way have still to go: 1 at their own places
 };
 float versine(uint n) {
     float s = sin_quarter(1.57079633f / float(n));
@@ -955,6 +1013,39 @@ uint least_factor(uint n) {
         p = p + 1u;
     }
     return n;
+}
+branch_end end_between(branch_end a, branch_end b, branch_end own) {
+    float l = b.path - a.path;
+    float t = l > 0.0f ? clamp((own.path - a.path) / l, 0.0f, 1.0f) : 0.5f;
+    branch_curve c = branch_curve_between(a, b);
+    branch_end e = own;
+    e.position = hermite_point(c.p1, c.n1, c.p2, c.n2, t);
+    e.radius = a.radius * (1.0f - t) + b.radius * t;
+    e.orientation = slerp(a.orientation, b.orientation, t);
+    e.slope = a.slope * (1.0f - t) + b.slope * t;
+    return e;
+}
+float way_between(branch_end a, branch_end b, branch_end own) {
+    branch_end e = end_between(a, b, own);
+    vec3 way = e.position - own.position;
+    return sqrt(dot3(way, way)) + abs(e.radius - own.radius);
+}
+branch_end end_on_its_way(branch_end a, branch_end b, branch_end own, float fraction) {
+    branch_end e = end_between(a, b, own);
+    e.position = e.position * (1.0f - fraction) + own.position * fraction;
+    e.radius = e.radius * (1.0f - fraction) + own.radius * fraction;
+    e.orientation = slerp(e.orientation, own.orientation, fraction);
+    e.slope = e.slope * (1.0f - fraction) + own.slope * fraction;
+    return e;
+}
+branch_segment merged_segment(branch_segment s, chain_detail chain) {
+    branch_segment m = s;
+    m.end = min(s.start + chain.stride, chain.last);
+    m.caps = (s.caps & 1u) | (m.end == chain.last ? chain.caps & 2u : 0u);
+    return m;
+}
+bool is_merged_away(chain_share start, chain_detail chain) {
+    return start.place % chain.stride != 0u;
 }
 segment_detail detail_of_segment(branch_segment s, branch_end a, branch_end b, end_detail da,
                                  end_detail db, float pixels_per_radian, float error, uint least,
@@ -1077,23 +1168,36 @@ surface_vertex between_vertices(surface_vertex own, surface_vertex before, surfa
 }
 layout(std430, binding = 0) readonly buffer segments_buffer { branch_segment segments[]; };
 layout(std430, binding = 1) readonly buffer ends_buffer { branch_end ends[]; };
-layout(std430, binding = 2) readonly buffer details_buffer { vec4 details[]; };
-layout(std430, binding = 3) writeonly buffer rings_buffer { uvec4 made_of[]; };
+layout(std430, binding = 2) readonly buffer shares_buffer { uvec4 shares[]; };
+layout(std430, binding = 3) readonly buffer chains_buffer { uvec4 chains[]; };
+layout(std430, binding = 4) readonly buffer details_buffer { vec4 details[]; };
+layout(std430, binding = 5) writeonly buffer merged_buffer { branch_segment merged[]; };
+layout(std430, binding = 6) writeonly buffer rings_buffer { uvec4 made_of[]; };
 end_detail detail_at(uint end) {
     vec4 d = details[end];
     return end_detail(d.x, d.y, d.z, d.w);
 }
 void kernel_map(uint i) {
     branch_segment s = segments[i];
-    branch_end a = ends[s.start];
-    branch_end b = ends[s.end];
-    end_detail da = detail_at(s.start);
-    end_detail db = detail_at(s.end);
-    a.radius = a.radius * da.scale;
-    b.radius = b.radius * db.scale;
-    segment_detail d = detail_of_segment(s, a, b, da, db, pixels_per_radian, error, fewest_sides,
-                                         sides, gaps);
-    made_of[i] = uvec4(d.sides, d.gaps, floatBitsToUint(d.fraction), d.caps);
+    uvec4 p = shares[s.start];
+    chain_share place = chain_share(uintBitsToFloat(p.x), uintBitsToFloat(p.y), p.z, p.w);
+    uvec4 c = chains[place.chain];
+    chain_detail chain = chain_detail(c.x, c.y, c.z, uintBitsToFloat(c.w));
+    uvec4 made = uvec4(0u);
+    if (!is_merged_away(place, chain)) {
+        s = merged_segment(s, chain);
+        branch_end a = ends[s.start];
+        branch_end b = ends[s.end];
+        end_detail da = detail_at(s.start);
+        end_detail db = detail_at(s.end);
+        a.radius = a.radius * da.scale;
+        b.radius = b.radius * db.scale;
+        segment_detail d = detail_of_segment(s, a, b, da, db, pixels_per_radian, error,
+                                             fewest_sides, sides, gaps);
+        made = uvec4(d.sides, d.gaps, floatBitsToUint(d.fraction), d.caps);
+    }
+    merged[i] = s;
+    made_of[i] = made;
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
 void main() {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 43cf38160f545f39e17eb336c81a70b05e369128cfc533fe60abe6b8fab03387
+// sha256 4480cca2f921e7e13d4d55a2d018ae6d36c845e7340f23c0fa12261fe2bc066c
 #pragma once
 
 #include <skybark/kernels/detailed_branch.hpp>
