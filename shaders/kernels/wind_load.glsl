@@ -1,5 +1,5 @@
 // Device side of skybark::kernels::wind_load.
-#define KERNEL_PARAMETERS float wood; float leaves; float vogel; float reference;
+#define KERNEL_PARAMETERS float half_density; float vogel; float reference;
 #include "../skeletons/parameters.glsl"
 #include "../shared/wind.glsl"
 layout(std430, binding = 0) readonly buffer segments_buffer { wind_segment segments[]; };
@@ -8,5 +8,5 @@ layout(std430, binding = 2) readonly buffer air_buffer { vec4 air[]; };
 layout(std430, binding = 3) writeonly buffer loads_buffer { segment_load loads[]; };
 
 void kernel_map(uint i) {
-    loads[i] = wind_load_on(segments[i], poses[i].rotation, air[i], wood, leaves, vogel, reference);
+    loads[i] = wind_load_on(segments[i], poses[i].rotation, air[i], half_density, vogel, reference);
 }

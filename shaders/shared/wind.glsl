@@ -20,8 +20,8 @@ struct wind_sums {
     vec4 z;
 };
 
-// What the wind sees of a segment. axis: xyz at rest, unit; w: length times mean diameter, m^2.
-// leaves.x: one side of all leaves that it carries, m^2.
+// What the wind sees of a segment, as drag areas (drag coefficient times area), m^2. axis: xyz at
+// rest, unit; w: of the wood, from length times mean diameter. leaves.x: of the leaves it carries.
 struct wind_segment {
     vec4 axis;
     vec4 leaves;
@@ -79,7 +79,7 @@ wind_cell wind_cell_of(float x, float origin, float per_spacing, uint count) {
 
 vec4 wind_between(vec4 a, vec4 b, float t) { return a * (1.0f - t) + b * t; }
 
-// r^v for r >= 1 and -1 <= v <= 0, relative error below 4e-6 up to r = 100: the logarithm of the
+// r^v for r >= 1 and -1 <= v <= 0, relative error below 4e-6 up to r = 50: the logarithm of the
 // eighth root by its series in (s - 1) / (s + 1), then the exponential's, then three squarings.
 float power_above_one(float r, float v) {
     float s = sqrt(sqrt(sqrt(r)));
@@ -95,21 +95,21 @@ float power_above_one(float r, float v) {
     return x4 * x4;
 }
 
-// Force and damping on a segment whose rotation from rest is given. `wood` and `leaves` are half
-// the air's density times the drag coefficient. Wood is a cylinder, dragged by the part of the air's
-// velocity across it; leaves are dragged with the air, and above the reference speed as its power
-// 2 + vogel. The damping is the derivative of each force along itself, the largest.
-segment_load wind_load_on(wind_segment segment, vec4 rotation, vec4 air, float wood, float leaves,
+// Force and damping on a segment whose rotation from rest is given. Wood is a cylinder, dragged by
+// the part of the air's velocity across it; leaves are dragged with the air, and above the reference
+// speed as its power 2 + vogel. The damping is the derivative of each force along itself, the
+// largest. half_density: of the air, kg/m^3.
+segment_load wind_load_on(wind_segment segment, vec4 rotation, vec4 air, float half_density,
                           float vogel, float reference) {
     vec3 u = vec3(air.x, air.y, air.z);
     vec3 axis = quaternion_rotate(rotation, vec3(segment.axis.x, segment.axis.y, segment.axis.z));
     vec3 across = u - axis * (axis.x * u.x + axis.y * u.y + axis.z * u.z);
     float speed_across =
         sqrt(across.x * across.x + across.y * across.y + across.z * across.z);
-    float wood_drag = wood * segment.axis.w * speed_across;
+    float wood_drag = half_density * segment.axis.w * speed_across;
     bool yields = air.w > reference;
     float folded = yields ? power_above_one(air.w / reference, vogel) : 1.0f;
-    float leaf_drag = leaves * segment.leaves.x * air.w * folded;
+    float leaf_drag = half_density * segment.leaves.x * air.w * folded;
     segment_load load;
     load.force = across * wood_drag + u * leaf_drag;
     load.drag = 2.0f * wood_drag + (yields ? 2.0f + vogel : 2.0f) * leaf_drag;

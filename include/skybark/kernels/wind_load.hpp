@@ -16,15 +16,14 @@ struct wind_load {
     using buffers = buffer_list<readonly<shared::wind_segment>, readonly<segment_pose>,
                                 readonly<glm::vec4>, writeonly<segment_load>>;
 
-    float wood = 0;      ///< kg/m³, half the air's density times the drag coefficient of wood
-    float leaves = 0;    ///< kg/m³, the same of leaves
-    float vogel = 0;     ///< the exponent V, −1 … 0
-    float reference = 1; ///< m/s > 0, where leaves begin to yield
+    float half_density = 0; ///< kg/m³, half of the air's
+    float vogel = 0;        ///< the exponent V of the leaves, −1 … 0
+    float reference = 1;    ///< m/s > 0, where leaves begin to yield
 
     void map(std::uint32_t i, std::span<const shared::wind_segment> segments,
              std::span<const segment_pose> poses, std::span<const glm::vec4> air,
              std::span<segment_load> loads) const {
-        loads[i] = shared::wind_load_on(segments[i], poses[i].rotation, air[i], wood, leaves, vogel,
+        loads[i] = shared::wind_load_on(segments[i], poses[i].rotation, air[i], half_density, vogel,
                                         reference);
     }
 };

@@ -398,11 +398,13 @@ make_wind_function(B& device, std::span<const glm::vec3> places, Function functi
 /// How the air drags. A crown's drag grows as U^(2 + vogel) above the reference speed, because
 /// leaves fold and turn: exponents of −0.5 to −1 are measured (Vogel 1984; Vollsinger et al. 2005,
 /// whose crowns are smaller from the 4 m/s on at which their tests begin). 0 is rigid, bare wood's.
+/// The coefficients in leaf are twice the 0.2 of canopies' drag ρ c_d a U² (Katul et al. 2004),
+/// where `a` counts leaves and twigs alike and shelter is in c_d.
 struct drag_options {
     double air_density = 1.2; ///< kg/m³, 0 … 1e4
     double wood = 1.1;        ///< C_d of a cylinder below its drag crisis, 0 … 10
-    double leaves = 0.4;      ///< C_d on one side of all leaves, sheltering included: twice the 0.2
-                              ///< of canopies' ρ c_d a U² (Katul et al. 2004); 0 … 10
+    double sheltered = 0.4;   ///< C_d of wood on trees in leaf, whose crowns slow the air; 0 … 10
+    double leaves = 0.4;      ///< C_d on one side of all leaves; 0 … 10
     double vogel = -0.7;      ///< of the leaves, −1 … 0
     double reference = 4;     ///< m/s, where the leaves begin to yield, 1e-3 … 1000
 };
@@ -428,6 +430,7 @@ class wind_loads {
         if (auto valid = check(options, of, leaf_area, device.limits()); !valid) {
             return failure(valid.error());
         }
+        const std::vector<bool> leafy = trees_in_leaf(of, leaf_area);
         std::vector<shared::wind_segment> segments(of.size());
         for (std::size_t i = 0; i < of.size(); ++i) {
             const float across = of.length[i] * (of.base_radius[i] + of.radius[i]);
@@ -435,8 +438,10 @@ class wind_loads {
             if (auto valid = check_areas(i, across, leaves); !valid) {
                 return failure(valid.error());
             }
-            segments[i].axis = glm::vec4(of.orientation[i] * glm::vec3(0, 1, 0), across);
-            segments[i].leaves = glm::vec4(leaves, 0, 0, 0);
+            const auto wood = static_cast<float>(leafy[i] ? options.sheltered : options.wood);
+            const glm::vec3 axis = of.orientation[i] * glm::vec3(0, 1, 0);
+            segments[i].axis = glm::vec4(axis, wood * across);
+            segments[i].leaves = glm::vec4(static_cast<float>(options.leaves) * leaves, 0, 0, 0);
         }
         wind_loads made;
         auto sent = make_buffer<B, shared::wind_segment>(device, segments);
@@ -451,8 +456,7 @@ class wind_loads {
         made.loads_ = std::move(*room);
         made.count_ = static_cast<std::uint32_t>(of.size());
         made.longest_ = detail::longest_range(device.limits());
-        made.kernel_ = {static_cast<float>(0.5 * options.air_density * options.wood),
-                        static_cast<float>(0.5 * options.air_density * options.leaves),
+        made.kernel_ = {static_cast<float>(0.5 * options.air_density),
                         static_cast<float>(options.vogel), static_cast<float>(options.reference)};
         return made;
     }
@@ -489,9 +493,27 @@ class wind_loads {
         return detail::expect_ranges(
             {{"air's density", options.air_density, 0, 1e4},
              {"drag coefficient of wood", options.wood, 0, 10},
+             {"drag coefficient of sheltered wood", options.sheltered, 0, 10},
              {"drag coefficient of leaves", options.leaves, 0, 10},
              {"Vogel exponent", options.vogel, -1, 0},
              {"reference speed of leaves", options.reference, 1e-3, 1000}});
+    }
+
+    /// Whether the tree that each segment belongs to has leaves.
+    [[nodiscard]] static std::vector<bool> trees_in_leaf(const skeleton& of,
+                                                         std::span<const float> leaf_area) {
+        std::vector<std::uint32_t> root(of.size());
+        std::vector<bool> leafy(of.size(), false);
+        for (std::uint32_t i = 0; i < of.size(); ++i) {
+            root[i] = of.parent[i] == none ? i : root[of.parent[i]];
+            if (!leaf_area.empty() && leaf_area[i] > 0) {
+                leafy[root[i]] = true;
+            }
+        }
+        for (std::size_t i = 0; i < of.size(); ++i) {
+            leafy[i] = leafy[root[i]];
+        }
+        return leafy;
     }
 
     [[nodiscard]] static result<void> check_areas(std::size_t i, float wood, float leaves) {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 48fa1be8ce40015d537fac72878a1f4b2d100976fba53413653422606c9f7931
+// sha256 6d7f506c9b9e3f56d4b11fe7ede2c1f9aa0a6580c2aa39efe487628208649f89
 #pragma once
 
 #include <skybark/kernels/grid_wind.hpp>
@@ -241,17 +241,17 @@ float power_above_one(float r, float v) {
     float x4 = x2 * x2;
     return x4 * x4;
 }
-segment_load wind_load_on(wind_segment segment, vec4 rotation, vec4 air, float wood, float leaves,
+segment_load wind_load_on(wind_segment segment, vec4 rotation, vec4 air, float half_density,
                           float vogel, float reference) {
     vec3 u = vec3(air.x, air.y, air.z);
     vec3 axis = quaternion_rotate(rotation, vec3(segment.axis.x, segment.axis.y, segment.axis.z));
     vec3 across = u - axis * (axis.x * u.x + axis.y * u.y + axis.z * u.z);
     float speed_across =
         sqrt(across.x * across.x + across.y * across.y + across.z * across.z);
-    float wood_drag = wood * segment.axis.w * speed_across;
+    float wood_drag = half_density * segment.axis.w * speed_across;
     bool yields = air.w > reference;
     float folded = yields ? power_above_one(air.w / reference, vogel) : 1.0f;
-    float leaf_drag = leaves * segment.leaves.x * air.w * folded;
+    float leaf_drag = half_density * segment.leaves.x * air.w * folded;
     segment_load load;
     load.force = across * wood_drag + u * leaf_drag;
     load.drag = 2.0f * wood_drag + (yields ? 2.0f + vogel : 2.0f) * leaf_drag;
@@ -520,17 +520,17 @@ float power_above_one(float r, float v) {
     float x4 = x2 * x2;
     return x4 * x4;
 }
-segment_load wind_load_on(wind_segment segment, vec4 rotation, vec4 air, float wood, float leaves,
+segment_load wind_load_on(wind_segment segment, vec4 rotation, vec4 air, float half_density,
                           float vogel, float reference) {
     vec3 u = vec3(air.x, air.y, air.z);
     vec3 axis = quaternion_rotate(rotation, vec3(segment.axis.x, segment.axis.y, segment.axis.z));
     vec3 across = u - axis * (axis.x * u.x + axis.y * u.y + axis.z * u.z);
     float speed_across =
         sqrt(across.x * across.x + across.y * across.y + across.z * across.z);
-    float wood_drag = wood * segment.axis.w * speed_across;
+    float wood_drag = half_density * segment.axis.w * speed_across;
     bool yields = air.w > reference;
     float folded = yields ? power_above_one(air.w / reference, vogel) : 1.0f;
-    float leaf_drag = leaves * segment.leaves.x * air.w * folded;
+    float leaf_drag = half_density * segment.leaves.x * air.w * folded;
     segment_load load;
     load.force = across * wood_drag + u * leaf_drag;
     load.drag = 2.0f * wood_drag + (yields ? 2.0f + vogel : 2.0f) * leaf_drag;

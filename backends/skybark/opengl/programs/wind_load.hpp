@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0b8473cf118429e97512375a720c86f032ba1b7f4685f80083dc85b138f35663
+// sha256 298ef6b64e1ef49319ed5dadbfe7bfdaf32d7ed5eefd4de46af9086874f84c48
 #pragma once
 
 #include <skybark/kernels/wind_load.hpp>
@@ -13,7 +13,7 @@ struct program<kernels::wind_load> {
     static constexpr std::string_view map_comp = R"glsl(#version 450
 #define SKYBARK_OPENGL
 layout(local_size_x = 64) in;
-#define KERNEL_PARAMETERS float wood; float leaves; float vogel; float reference;
+#define KERNEL_PARAMETERS float half_density; float vogel; float reference;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -241,17 +241,17 @@ float power_above_one(float r, float v) {
     float x4 = x2 * x2;
     return x4 * x4;
 }
-segment_load wind_load_on(wind_segment segment, vec4 rotation, vec4 air, float wood, float leaves,
+segment_load wind_load_on(wind_segment segment, vec4 rotation, vec4 air, float half_density,
                           float vogel, float reference) {
     vec3 u = vec3(air.x, air.y, air.z);
     vec3 axis = quaternion_rotate(rotation, vec3(segment.axis.x, segment.axis.y, segment.axis.z));
     vec3 across = u - axis * (axis.x * u.x + axis.y * u.y + axis.z * u.z);
     float speed_across =
         sqrt(across.x * across.x + across.y * across.y + across.z * across.z);
-    float wood_drag = wood * segment.axis.w * speed_across;
+    float wood_drag = half_density * segment.axis.w * speed_across;
     bool yields = air.w > reference;
     float folded = yields ? power_above_one(air.w / reference, vogel) : 1.0f;
-    float leaf_drag = leaves * segment.leaves.x * air.w * folded;
+    float leaf_drag = half_density * segment.leaves.x * air.w * folded;
     segment_load load;
     load.force = across * wood_drag + u * leaf_drag;
     load.drag = 2.0f * wood_drag + (yields ? 2.0f + vogel : 2.0f) * leaf_drag;
@@ -262,7 +262,7 @@ layout(std430, binding = 1) readonly buffer poses_buffer { segment_pose poses[];
 layout(std430, binding = 2) readonly buffer air_buffer { vec4 air[]; };
 layout(std430, binding = 3) writeonly buffer loads_buffer { segment_load loads[]; };
 void kernel_map(uint i) {
-    loads[i] = wind_load_on(segments[i], poses[i].rotation, air[i], wood, leaves, vogel, reference);
+    loads[i] = wind_load_on(segments[i], poses[i].rotation, air[i], half_density, vogel, reference);
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
@@ -282,7 +282,7 @@ void main() {
 #define readonly coherent readonly
 #define writeonly coherent writeonly
 layout(local_size_x = 256) in;
-#define KERNEL_PARAMETERS float wood; float leaves; float vogel; float reference;
+#define KERNEL_PARAMETERS float half_density; float vogel; float reference;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -510,17 +510,17 @@ float power_above_one(float r, float v) {
     float x4 = x2 * x2;
     return x4 * x4;
 }
-segment_load wind_load_on(wind_segment segment, vec4 rotation, vec4 air, float wood, float leaves,
+segment_load wind_load_on(wind_segment segment, vec4 rotation, vec4 air, float half_density,
                           float vogel, float reference) {
     vec3 u = vec3(air.x, air.y, air.z);
     vec3 axis = quaternion_rotate(rotation, vec3(segment.axis.x, segment.axis.y, segment.axis.z));
     vec3 across = u - axis * (axis.x * u.x + axis.y * u.y + axis.z * u.z);
     float speed_across =
         sqrt(across.x * across.x + across.y * across.y + across.z * across.z);
-    float wood_drag = wood * segment.axis.w * speed_across;
+    float wood_drag = half_density * segment.axis.w * speed_across;
     bool yields = air.w > reference;
     float folded = yields ? power_above_one(air.w / reference, vogel) : 1.0f;
-    float leaf_drag = leaves * segment.leaves.x * air.w * folded;
+    float leaf_drag = half_density * segment.leaves.x * air.w * folded;
     segment_load load;
     load.force = across * wood_drag + u * leaf_drag;
     load.drag = 2.0f * wood_drag + (yields ? 2.0f + vogel : 2.0f) * leaf_drag;
@@ -531,7 +531,7 @@ layout(std430, binding = 1) readonly buffer poses_buffer { segment_pose poses[];
 layout(std430, binding = 2) readonly buffer air_buffer { vec4 air[]; };
 layout(std430, binding = 3) writeonly buffer loads_buffer { segment_load loads[]; };
 void kernel_map(uint i) {
-    loads[i] = wind_load_on(segments[i], poses[i].rotation, air[i], wood, leaves, vogel, reference);
+    loads[i] = wind_load_on(segments[i], poses[i].rotation, air[i], half_density, vogel, reference);
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
 void main() {

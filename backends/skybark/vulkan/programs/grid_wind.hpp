@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f5579652bdfd853ac5538e98e2a0440c3d483c42e299ad6b8019fe2a7f9cde15
+// sha256 477f7a40233b487cb1bbfee89692317f5629db6225ae36fdc03f144ae4d722ad
 #pragma once
 
 #include <skybark/kernels/grid_wind.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 01d64fd5ba2b156d2289303b990a5446ab40d0c7f7a96d453009916eac8cb6eb
+// sha256 cdbd5798852aef4748aad1d650b0206c2ad124cdba4ea3cb6a79fa89fa1e07d8
 #pragma once
 
 #include <skybark/kernels/wave_wind.hpp>
