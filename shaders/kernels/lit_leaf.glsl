@@ -1,7 +1,7 @@
 // Device side of skybark::kernels::lit_leaf.
 #define KERNEL_VARYINGS 2
 #define KERNEL_IMAGES 2
-#define KERNEL_PARAMETERS float through;
+#define KERNEL_PARAMETERS float through; float sky;
 #include "../skeletons/parameters.glsl"
 #include "../shared/shading.glsl"
 #include "../shared/leaf.glsl"
@@ -31,8 +31,8 @@ bool kernel_fragment(vec2 pixel, bool front) {
     vec3 n = front ? upper : -upper;
     float facing = dot(n, scene.sky.to_sun.xyz);
     float sun = sun_at(scene, position, facing > 0.0 ? n : -n);
-    vec3 here = ambient_of(n);
-    vec3 behind = ambient_of(-n);
+    vec3 here = ambient_of(n) * sky;
+    vec3 behind = ambient_of(-n) * sky;
     vec3 albedo = vec3(leaf_linear(texel.x), leaf_linear(texel.y), leaf_linear(texel.z));
     vec3 passed = albedo * vec3(1.1, 1.0, 0.3) * through;
     vec3 light = scene.sky.sunlight.xyz * sun;

@@ -1,5 +1,6 @@
 // One leaf: two half discs that meet at the midrib (Akagi and Kitajima, 3.4), carried by a segment,
-// turned by the air, and thinned out with distance. + - * / sqrt and integers only.
+// turned by the air, and thinned out with distance. + - * / sqrt and integers only; drivers may still
+// multiply by constants in another order, so that backends differ by a few roundings.
 #include "records.glsl"
 #include "quaternion.glsl"
 #include "pose.glsl"

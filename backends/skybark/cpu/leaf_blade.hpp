@@ -100,6 +100,7 @@ struct leaves4 {
     f4 right_across[4], left_across[4]; ///< w: 1
     f4 right_normal[4], left_normal[4]; ///< w: −0
     f4 axis, diagonal;
+    f4 scale, morph;
 
     [[nodiscard]] static leaves4 of(const kernels::leaf_blade& k, const rows4& leaf,
                                     const rows4& pose, const f4 (&air)[4]) {
@@ -118,8 +119,11 @@ struct leaves4 {
         if (k.camera.w > 0.0f) {
             detail(k, base, width, length, seed, scale, morph);
         }
-        return frame(base, turned, leaf.row[2][3], 0.5f * width * scale, 0.5f * length * scale,
-                     morph);
+        leaves4 four =
+            frame(base, turned, leaf.row[2][3], 0.5f * width * scale, 0.5f * length * scale, morph);
+        four.scale = scale;
+        four.morph = morph;
+        return four;
     }
 
   private:
@@ -201,18 +205,62 @@ struct program<kernels::leaf_blade> : plain_program<kernels::leaf_blade> {
     static void rings(const kernel_type& kernel, range elements, std::byte* to,
                       kernel_type::leaves_span leaves, kernel_type::poses_span poses,
                       kernel_type::air_span air) {
-        constexpr std::size_t stride = 10 * sizeof(surface_vertex);
+        constexpr std::size_t each = 10 * vertex_floats;
         for (std::uint32_t done = 0; done < elements.count; done += 4) {
             const std::uint32_t count = std::min(4u, elements.count - done);
-            four(kernel, elements.first + done, count, to + done * stride, leaves, poses, air);
+            const lanes::leaves4 four =
+                gather(kernel, elements.first + done, count, leaves, poses, air);
+            for (std::uint32_t lane = 0; lane < count; ++lane) {
+                float* out = reinterpret_cast<float*>(to) + (done + lane) * each;
+                for (const blade_half& half : halves_of(four, lane)) {
+                    for (std::size_t corner = 0; corner < 5; ++corner) {
+                        out = write(out, half, corner);
+                    }
+                }
+            }
+        }
+    }
+
+    [[nodiscard]] static std::uint64_t count(const kernel_type& kernel, range elements,
+                                             kernel_type::leaves_span leaves,
+                                             kernel_type::poses_span poses,
+                                             kernel_type::air_span air) {
+        if (!(kernel.camera.w > 0.0f)) {
+            return std::uint64_t{6} * elements.count;
+        }
+        std::uint64_t triangles = 0;
+        for (std::uint32_t i = elements.first; i < elements.first + elements.count; ++i) {
+            triangles += 2 * kernel.triangles(i, 0, leaves, poses, air);
+        }
+        return triangles;
+    }
+
+    template <class Sink>
+    static void triangles(const kernel_type& kernel, range elements, Sink& sink,
+                          kernel_type::leaves_span leaves, kernel_type::poses_span poses,
+                          kernel_type::air_span air) {
+        for (std::uint32_t done = 0; done < elements.count; done += 4) {
+            const range some{elements.first + done, std::min(4u, elements.count - done)};
+            if (sink.room() < std::uint64_t{6} * some.count) {
+                plain_program<kernel_type>::triangles(kernel, some, sink, leaves, poses, air);
+                continue;
+            }
+            const lanes::leaves4 four = gather(kernel, some.first, some.count, leaves, poses, air);
+            for (std::uint32_t lane = 0; lane < some.count; ++lane) {
+                if (four.scale[lane] > 0.0f) {
+                    sink.skip(write_list(sink.place(), four, lane));
+                }
+            }
         }
     }
 
   private:
+    static constexpr std::size_t vertex_floats = sizeof(surface_vertex) / sizeof(float);
+
     /// Leaves [first, first + count), count ≤ 4; spare lanes repeat the last leaf.
-    static void four(const kernel_type& kernel, std::uint32_t first, std::uint32_t count,
-                     std::byte* to, kernel_type::leaves_span leaves, kernel_type::poses_span poses,
-                     kernel_type::air_span air) {
+    static lanes::leaves4 gather(const kernel_type& kernel, std::uint32_t first,
+                                 std::uint32_t count, kernel_type::leaves_span leaves,
+                                 kernel_type::poses_span poses, kernel_type::air_span air) {
         using namespace lanes;
         const leaf* leaf_of[4];
         const segment_pose* pose_of[4];
@@ -224,33 +272,60 @@ struct program<kernels::leaf_blade> : plain_program<kernels::leaf_blade> {
             blowing[lane] = load(&air[l.carrier * kernel.air_step]);
         }
         transpose(blowing[0], blowing[1], blowing[2], blowing[3]);
-        const leaves4 four =
-            leaves4::of(kernel, rows4::gather(leaf_of), rows4::gather(pose_of), blowing);
-        for (std::uint32_t lane = 0; lane < count; ++lane) {
-            float* out = reinterpret_cast<float*>(to + lane * 10 * sizeof(surface_vertex));
-            const float a = four.axis[lane];
-            const float d = four.diagonal[lane];
-            write_half(out, four.base[lane], four.middle[lane], four.right[lane],
-                       four.right_normal[lane], four.right_across[lane], a, d);
-            write_half(out + 60, four.base[lane], four.middle[lane], four.left[lane],
-                       four.left_normal[lane], four.left_across[lane], a, d);
-        }
+        return leaves4::of(kernel, rows4::gather(leaf_of), rows4::gather(pose_of), blowing);
     }
 
-    /// shared::leaf_vertex for the five corners.
-    static void write_half(float* out, lanes::f4 base, lanes::f4 middle, lanes::f4 side,
-                           lanes::f4 normal, lanes::f4 tangent, float axis, float diagonal) {
+    /// One half's five vertices: positions with u, normals with v, and the tangent.
+    struct blade_half {
+        lanes::f4 position[5];
+        lanes::f4 normal[5];
+        lanes::f4 tangent;
+    };
+
+    /// shared::leaf_vertex for the corners of both halves.
+    static std::array<blade_half, 2> halves_of(const lanes::leaves4& four, std::uint32_t lane) {
         using namespace lanes;
+        const float axis = four.axis[lane];
+        const float diagonal = four.diagonal[lane];
         const float across[5] = {0, diagonal, axis, diagonal, 0};
         const float along[5] = {-axis, -diagonal, 0, diagonal, axis};
+        std::array<blade_half, 2> halves;
+        halves[0].tangent = four.right_across[lane];
+        halves[1].tangent = four.left_across[lane];
         for (std::size_t i = 0; i < 5; ++i) {
-            const float v = 0.5f + 0.5f * along[i];
-            stream(out, base + (side * splat(across[i]) + middle * splat(1.0f + along[i])));
+            const f4 up = four.middle[lane] * splat(1.0f + along[i]);
             // -0 changes nothing that it is added to, not even a zero's sign.
-            stream(out + 4, normal + f4{-0.0f, -0.0f, -0.0f, v});
-            stream(out + 8, tangent);
-            out += 12;
+            const f4 v{-0.0f, -0.0f, -0.0f, 0.5f + 0.5f * along[i]};
+            halves[0].position[i] = four.base[lane] + (four.right[lane] * splat(across[i]) + up);
+            halves[1].position[i] = four.base[lane] + (four.left[lane] * splat(across[i]) + up);
+            halves[0].normal[i] = four.right_normal[lane] + v;
+            halves[1].normal[i] = four.left_normal[lane] + v;
         }
+        return halves;
+    }
+
+    static float* write(float* out, const blade_half& half, std::size_t corner) {
+        lanes::stream(out, half.position[corner]);
+        lanes::stream(out + 4, half.normal[corner]);
+        lanes::stream(out + 8, half.tangent);
+        return out + vertex_floats;
+    }
+
+    /// The triangles of a leaf's two strips.
+    static std::uint64_t write_list(std::byte* to, const lanes::leaves4& four, std::uint32_t lane) {
+        static constexpr std::uint8_t octagon[2][9] = {{0, 1, 4, 4, 1, 2, 4, 2, 3},
+                                                       {4, 3, 0, 0, 3, 2, 0, 2, 1}};
+        static constexpr std::uint8_t quadrilateral[2][3] = {{0, 2, 4}, {4, 2, 0}};
+        const bool whole = four.morph[lane] < 1.0f;
+        const auto halves = halves_of(four, lane);
+        float* out = reinterpret_cast<float*>(to);
+        for (std::size_t half = 0; half < 2; ++half) {
+            const std::uint8_t* corners = whole ? octagon[half] : quadrilateral[half];
+            for (std::size_t k = 0; k < (whole ? 9u : 3u); ++k) {
+                out = write(out, halves[half], corners[k]);
+            }
+        }
+        return whole ? 6 : 2;
     }
 };
 

@@ -21,6 +21,7 @@
 #include <skybark/conformance/chains.hpp>
 #include <skybark/conformance/draws.hpp>
 #include <skybark/conformance/images.hpp>
+#include <skybark/conformance/leaves.hpp>
 #include <skybark/conformance/lists.hpp>
 #include <skybark/conformance/maps.hpp>
 #include <skybark/conformance/rings.hpp>
@@ -93,6 +94,7 @@ template <backend B>
     add_draw_cases(all);
     add_chain_cases(all);
     add_branch_cases(all);
+    add_leaf_cases(all);
     return all;
 }
 

@@ -21,9 +21,9 @@ struct cast_leaf_shadow {
 
     template <class Images>
     fragment_output fragment(const std::array<glm::vec4, 1>& in, glm::vec2, bool,
-                             const Images& images, std::span<const surface_vertex>,
+                             const Images& pictures, std::span<const surface_vertex>,
                              std::span<const scene_record>) const {
-        return {{}, images.sample(0, glm::vec2(in[0].x, in[0].y)).w >= 0.5f};
+        return {{}, pictures.sample(0, glm::vec2(in[0].x, in[0].y)).w >= 0.5f};
     }
 };
 

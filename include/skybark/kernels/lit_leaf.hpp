@@ -14,6 +14,7 @@ struct lit_leaf {
     static constexpr std::uint32_t varyings = 2;
 
     float through = 0.8f; ///< green light that comes through over what is scattered back
+    float sky = 0.75f;    ///< of the sky's light, what other leaves leave of it
 
     glm::vec4 vertex(std::uint32_t index, std::array<glm::vec4, 2>& out,
                      std::span<const surface_vertex> vertices,
@@ -25,9 +26,9 @@ struct lit_leaf {
 
     template <class Images>
     fragment_output fragment(const std::array<glm::vec4, 2>& in, glm::vec2, bool front,
-                             const Images& images, std::span<const surface_vertex>,
+                             const Images& pictures, std::span<const surface_vertex>,
                              std::span<const scene_record> scene) const {
-        const glm::vec4 texel = images.sample(1, glm::vec2(in[0].w, in[1].w));
+        const glm::vec4 texel = pictures.sample(1, glm::vec2(in[0].w, in[1].w));
         if (texel.w < 0.5f) {
             return {{}, false};
         }
@@ -35,9 +36,9 @@ struct lit_leaf {
         const glm::vec3 upper = glm::normalize(glm::vec3(in[1]));
         const glm::vec3 n = front ? upper : -upper;
         const float facing = glm::dot(n, glm::vec3(scene[0].sky.to_sun));
-        const float sun = sun_at(scene[0], position, facing > 0.0f ? n : -n, images);
-        const glm::vec3 here = ambient_of(scene[0], n);
-        const glm::vec3 behind = ambient_of(scene[0], -n);
+        const float sun = sun_at(scene[0], position, facing > 0.0f ? n : -n, pictures);
+        const glm::vec3 here = ambient_of(scene[0], n) * sky;
+        const glm::vec3 behind = ambient_of(scene[0], -n) * sky;
         const glm::vec3 albedo(shared::leaf_linear(texel.x), shared::leaf_linear(texel.y),
                                shared::leaf_linear(texel.z));
         const glm::vec3 passed = albedo * glm::vec3(1.1f, 1.0f, 0.3f) * through;

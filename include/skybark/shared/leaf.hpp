@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 deb6d8dc7f75b89d4216adf9056dc08a9c0d595a212d98912f325163f639f7df
+// sha256 8bf5305fafffe4a9edde487a23ab311fb7e9b83b31826a50dac8f21ca2b84c6c
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -11,7 +11,8 @@
 namespace skybark::shared {
 
 // One leaf: two half discs that meet at the midrib (Akagi and Kitajima, 3.4), carried by a segment,
-// turned by the air, and thinned out with distance. + - * / sqrt and integers only.
+// turned by the air, and thinned out with distance. + - * / sqrt and integers only; drivers may still
+// multiply by constants in another order, so that backends differ by a few roundings.
 
 // Random bits of a leaf, another set for each `salt` (lowbias32: Wellons 2018).
 inline uint leaf_bits(uint seed, uint salt) {

@@ -11,6 +11,7 @@
 
 #include <skybark/kernels/leaf_blade.hpp>
 #include <skybark/trees/branch_mesh.hpp>
+#include <skybark/trees/view_detail.hpp>
 
 #include <numeric>
 
@@ -23,6 +24,8 @@ struct leaf_mesh_options {
     float flutter_speed = 3.0f;        ///< m/s where half of it is reached, > 0
     float lean = 0.6f;                 ///< tangent of half the largest lean with the wind
     float lean_speed = 10.0f;          ///< m/s where half of it is reached, > 0
+    float full = 3; ///< pixels: smaller leaves are thinned out by a view's `thin`
+    float quad = 4; ///< pixels: smaller ones are quadrilaterals by its `error`, half so up to twice
 };
 
 /// How the leaves are carried and what blows.
@@ -31,14 +34,6 @@ struct leaf_motion {
     buffer_view<B> poses; ///< segment_pose, one a segment, or one for all; absent: at rest
     buffer_view<B> air;   ///< vec4 (velocity, speed) in m/s, the same way; absent: calm
     double time = 0;      ///< s
-};
-
-/// From where leaves are looked at, for level of detail.
-struct leaf_view {
-    glm::vec3 camera{0}; ///< m
-    float pixels = 0;    ///< a radian at the middle of the picture: height / (2 tan(field / 2))
-    float full = 3;      ///< pixels: smaller leaves are thinned out and the others enlarged
-    float quad = 4;      ///< pixels: smaller leaves become quadrilaterals, up to twice it gradually
 };
 
 /// Leaves as triangles in buffers of backend B.
@@ -77,13 +72,14 @@ class leaf_mesh {
         return mesh;
     }
 
-    /// Appends the making of all vertices. Allocates nothing.
-    void record(recorder& to, const leaf_motion<B>& motion = {}, const leaf_view& seen = {}) const {
+    /// Appends the making of all vertices, as detailed as the view asks. Allocates nothing.
+    void record(recorder& to, const leaf_motion<B>& motion = {},
+                const view_detail& seen = {}) const {
         kernels::leaf_blade blade = blade_;
         blade.time = kernels::flutter_time(motion.time);
-        blade.camera = glm::vec4(seen.camera, seen.pixels);
-        blade.full = seen.full;
-        blade.quad = seen.quad;
+        blade.camera = camera_of(seen);
+        blade.full = seen.thin > 0 ? options_.full : none_so_small;
+        blade.quad = seen.error > 0 ? options_.quad : none_so_small;
         const buffer_view<B> poses = motion.poses ? motion.poses : view<B>(*rest_);
         const buffer_view<B> air = motion.air ? motion.air : view<B>(*calm_);
         blade.pose_step = poses.size == sizeof(segment_pose) ? 0 : 1;
@@ -154,6 +150,8 @@ class leaf_mesh {
 
   private:
     leaf_mesh() = default;
+
+    static constexpr float none_so_small = 1e-30f; ///< pixels
 
     [[nodiscard]] std::uint64_t total(std::uint32_t part::*of) const {
         std::uint64_t sum = 0;

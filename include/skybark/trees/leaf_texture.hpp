@@ -69,24 +69,24 @@ struct leaf_look {
 
 [[nodiscard]] inline const leaf_look& look_of(leaf_shape shape) {
     static const std::array<leaf_look, 4> looks{{
-        {0.10f, 0.40f, 1.10f, 0.80f, 0.30f, 7, 0, 0, {0.33f, 0.45f, 0.16f}},
-        {0.07f, 0.42f, 0.85f, 1.10f, 0.45f, 12, 0, 0, {0.42f, 0.50f, 0.25f}},
-        {0.26f, 0.40f, 0.80f, 0.55f, 0.35f, 5, 0, 0.03f, {0.40f, 0.52f, 0.22f}},
-        {0.14f, 0.46f, 1.00f, 0.60f, 0.55f, 4, 0.62f, 0.03f, {0.30f, 0.42f, 0.14f}},
+        {0.10f, 0.42f, 0.95f, 0.90f, 0.35f, 7, 0, 0, {0.31f, 0.41f, 0.20f}},
+        {0.07f, 0.44f, 0.75f, 1.05f, 0.60f, 12, 0, 0, {0.39f, 0.46f, 0.29f}},
+        {0.26f, 0.42f, 0.78f, 0.60f, 0.40f, 5, 0, 0.03f, {0.36f, 0.45f, 0.24f}},
+        {0.14f, 0.435f, 1.00f, 0.50f, 0.60f, 4, 0.75f, 0.03f, {0.31f, 0.40f, 0.19f}},
     }};
     return looks[static_cast<std::size_t>(shape)];
 }
 
-/// Half the leaf's width where it has come a part `t` of the way from stalk to tip.
-[[nodiscard]] inline float half_width(const leaf_look& look, float t) {
+/// Half the leaf's width a part `t` of the way from stalk to tip; lobes and teeth go by `slanted`.
+[[nodiscard]] inline float half_width(const leaf_look& look, float t, float slanted) {
     constexpr float pi = 3.14159265f;
     if (t <= 0 || t >= 1) {
         return 0;
     }
     const float bulge = std::pow(std::sin(pi * std::pow(t, look.belly)), look.blunt);
-    const float bay = 0.5f - 0.5f * std::cos(2 * pi * static_cast<float>(look.veins) * t);
+    const float bay = 0.5f - 0.5f * std::cos(2 * pi * static_cast<float>(look.veins) * slanted);
     const float lobe = 1 - look.lobes * (1 - std::sqrt(bay));
-    const float tooth = 1 - look.teeth * (0.5f + 0.5f * std::cos(2 * pi * 26 * t));
+    const float tooth = 1 - look.teeth * (0.5f + 0.5f * std::cos(2 * pi * 26 * slanted));
     return look.width * bulge * lobe * tooth;
 }
 
@@ -101,12 +101,11 @@ struct leaf_sample {
     const float t = (y - look.stalk) / (0.985f - look.stalk);
     const float slanted = t - look.shear * side * std::clamp(2 * t, 0.0f, 1.0f);
     const bool on_stalk = y < look.stalk + 0.06f && side < 0.014f;
-    const bool in_blade = t > 0 && t < 1 && side < half_width(look, std::max(slanted, 1e-3f)) &&
-                          side < 1.6f * (1 - t);
+    const bool in_blade = side < half_width(look, t, std::max(slanted, 0.0f));
     const float rib = 1 - side / (0.012f * (1.3f - t));
     // Half way between two bays, where a lobe is widest.
     const float vein_at = slanted * static_cast<float>(look.veins) + 0.5f;
-    const float off = std::abs(vein_at - std::floor(vein_at) - 0.0f);
+    const float off = std::abs(vein_at - std::floor(vein_at));
     const float nearest = std::min(off, 1 - off) / static_cast<float>(look.veins);
     const float lateral = 0.7f * (1 - nearest / 0.006f);
     return {on_stalk || in_blade, std::clamp(std::max(rib, lateral), 0.0f, 1.0f)};
@@ -138,7 +137,7 @@ struct leaf_sample {
                                  0.08f * shared::value_noise(u * 40, v * 40, 2, 40);
             std::uint8_t* to = &picture.rgba[(std::size_t{row} * n + column) * 4];
             for (std::size_t c = 0; c < 3; ++c) {
-                const float pale = c == 2 ? 0.12f : 0.17f;
+                const float pale = c == 2 ? 0.09f : 0.14f;
                 const float value = look.color[c] * mottle + pale * vein;
                 to[c] = static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f);
             }

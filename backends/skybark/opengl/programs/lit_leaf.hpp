@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 357cc1b88d2579ee52c29fc309c03a479fbbc81b0d5f19c6c2c7d2f33c6e8f93
+// sha256 786cfd17525764e7675f6e0650579b0592d7694b56fb8edf5631c096aaa4f6fb
 #pragma once
 
 #include <skybark/kernels/lit_leaf.hpp>
@@ -15,7 +15,7 @@ struct program<kernels::lit_leaf> {
 #define SKYBARK_VERTEX_STAGE
 #define KERNEL_VARYINGS 2
 #define KERNEL_IMAGES 2
-#define KERNEL_PARAMETERS float through;
+#define KERNEL_PARAMETERS float through; float sky;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -503,8 +503,8 @@ bool kernel_fragment(vec2 pixel, bool front) {
     vec3 n = front ? upper : -upper;
     float facing = dot(n, scene.sky.to_sun.xyz);
     float sun = sun_at(scene, position, facing > 0.0 ? n : -n);
-    vec3 here = ambient_of(n);
-    vec3 behind = ambient_of(-n);
+    vec3 here = ambient_of(n) * sky;
+    vec3 behind = ambient_of(-n) * sky;
     vec3 albedo = vec3(leaf_linear(texel.x), leaf_linear(texel.y), leaf_linear(texel.z));
     vec3 passed = albedo * vec3(1.1, 1.0, 0.3) * through;
     vec3 light = scene.sky.sunlight.xyz * sun;
@@ -521,7 +521,7 @@ void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
 #define SKYBARK_FRAGMENT_STAGE
 #define KERNEL_VARYINGS 2
 #define KERNEL_IMAGES 2
-#define KERNEL_PARAMETERS float through;
+#define KERNEL_PARAMETERS float through; float sky;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -1009,8 +1009,8 @@ bool kernel_fragment(vec2 pixel, bool front) {
     vec3 n = front ? upper : -upper;
     float facing = dot(n, scene.sky.to_sun.xyz);
     float sun = sun_at(scene, position, facing > 0.0 ? n : -n);
-    vec3 here = ambient_of(n);
-    vec3 behind = ambient_of(-n);
+    vec3 here = ambient_of(n) * sky;
+    vec3 behind = ambient_of(-n) * sky;
     vec3 albedo = vec3(leaf_linear(texel.x), leaf_linear(texel.y), leaf_linear(texel.z));
     vec3 passed = albedo * vec3(1.1, 1.0, 0.3) * through;
     vec3 light = scene.sky.sunlight.xyz * sun;
