@@ -29,12 +29,12 @@ struct lit_bark {
 
     template <class Images>
     fragment_output fragment(const std::array<glm::vec4, 3>& in, glm::vec2, bool,
-                             const Images& images, std::span<const surface_vertex>,
+                             const Images& maps, std::span<const surface_vertex>,
                              std::span<const scene_record> scene) const {
         const glm::vec3 position(in[0]);
         const glm::vec3 geometric = glm::normalize(glm::vec3(in[1]));
         const glm::vec4 texel =
-            images.sample(1, glm::vec2(in[0].w * repeats_around, in[1].w * repeats_along));
+            maps.sample(1, glm::vec2(in[0].w * repeats_around, in[1].w * repeats_along));
         const glm::vec3 albedo = glm::mix(glm::vec3(low), glm::vec3(high), texel.w);
         // Across the normal: interpolated tangents lean, and may vanish.
         const glm::vec3 across =
@@ -47,7 +47,7 @@ struct lit_bark {
                                            b * ((texel.y * 2.0f - 1.0f) * slope));
         const glm::vec3 to_sun(scene[0].sky.to_sun);
         const float sun = glm::dot(geometric, to_sun) > 0.0f
-                              ? sun_at(scene[0], position, geometric, images)
+                              ? sun_at(scene[0], position, geometric, maps)
                               : 0.0f;
         return {glm::vec4(shared::lit(albedo, n, scene[0].sky, sun, ambient_of(scene[0], n)), 1.0f),
                 true};

@@ -17,7 +17,10 @@
 #include <skybark/trees/bark_texture.hpp>
 #include <skybark/trees/branch_mesh.hpp>
 
+#include <cstring>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <unordered_map>
 
 namespace skybark::trees {
 
@@ -30,9 +33,117 @@ struct bark_options {
     float rounding = 1; ///< 1: midpoints on the curve that the normals ask for; 0: on the chord
     std::uint32_t most_passes = 6;     ///< each halves the edges; 1 … 12
     padding policy = padding::compact; ///< degenerate: room for four times as many in each pass
-    float stretch = 1.25f; ///< ≥ 1; edges that this makes longer than the threshold may be split
-    float reserve = 0.25f; ///< of the lists' room, for sway
+    float stretch = 1.25f;  ///< ≥ 1; edges that this makes longer than the threshold may be split
+    float narrowest = 0.5f; ///< of the threshold, 0 … 0.75: what is narrower around stays whole
+    float reserve = 0.25f;  ///< of the lists' room, for sway
 };
+
+namespace detail {
+
+/// The most that a triangle's edges reach around the branch, by its corners' tangents, m. Infinite
+/// where no corner has one.
+[[nodiscard]] inline float width_around(const surface_vertex& a, const surface_vertex& b,
+                                        const surface_vertex& c) {
+    float width = 0;
+    bool any = false;
+    for (const surface_vertex* corner : {&a, &b, &c}) {
+        if (corner->tangent.w == 0) {
+            continue;
+        }
+        any = true;
+        const glm::vec3 t(corner->tangent);
+        for (const glm::vec3& edge :
+             {b.position - a.position, c.position - b.position, a.position - c.position}) {
+            width = std::max(width, std::abs(glm::dot(edge, t)));
+        }
+    }
+    return any ? width : std::numeric_limits<float>::infinity();
+}
+
+/// Finds which triangles hang together by edges that may be split.
+class long_edge_groups {
+  public:
+    long_edge_groups(std::span<const surface_vertex> vertices,
+                     std::span<const std::uint32_t> indices, float shortest)
+        : group_(indices.size() / 3) {
+        for (std::uint32_t t = 0; t < group_.size(); ++t) {
+            group_[t] = t;
+        }
+        std::unordered_map<edge, std::uint32_t, edge_hash> first;
+        for (std::uint32_t k = 0; k < 3 * group_.size(); ++k) {
+            const std::uint32_t n = k % 3 == 2 ? k - 2 : k + 1;
+            const glm::vec3& a = vertices[indices[k]].position;
+            const glm::vec3& b = vertices[indices[n]].position;
+            if (shared::bark_edge_square(a, b) > shortest * shortest) {
+                const bool in_order = shared::bark_in_order(a, b);
+                const auto [place, added] =
+                    first.try_emplace(in_order ? edge{a, b} : edge{b, a}, k / 3);
+                if (!added) {
+                    group_[of(k / 3)] = of(place->second);
+                }
+            }
+        }
+    }
+
+    [[nodiscard]] std::uint32_t of(std::uint32_t triangle) {
+        while (group_[triangle] != triangle) {
+            group_[triangle] = group_[group_[triangle]];
+            triangle = group_[triangle];
+        }
+        return triangle;
+    }
+
+  private:
+    struct edge {
+        glm::vec3 from, to;
+        bool operator==(const edge& other) const { return from == other.from && to == other.to; }
+    };
+    struct edge_hash {
+        std::size_t operator()(const edge& e) const {
+            std::uint64_t h = 0;
+            for (const float x : {e.from.x, e.from.y, e.from.z, e.to.x, e.to.y, e.to.z}) {
+                std::uint32_t word = 0;
+                const float no_minus = x + 0.0f; // -0 equals 0
+                std::memcpy(&word, &no_minus, sizeof word);
+                h = (h ^ word) * 0x9e3779b97f4a7c15ull;
+                h ^= h >> 29;
+            }
+            return static_cast<std::size_t>(h);
+        }
+    };
+
+    std::vector<std::uint32_t> group_;
+};
+
+/// Which triangles may ever be refined: those with edges that sway may make longer than the
+/// threshold, unless all that hang together by such edges are too narrow around for bark to show.
+/// So an edge between one that is refined and one that is not is never split.
+[[nodiscard]] inline std::vector<bool> triangles_to_refine(std::span<const surface_vertex> vertices,
+                                                           std::span<const std::uint32_t> indices,
+                                                           const bark_options& options) {
+    const std::size_t triangles = indices.size() / 3;
+    const float shortest = options.threshold / options.stretch;
+    const auto corner = [&](std::size_t t, std::size_t k) -> const surface_vertex& {
+        return vertices[indices[3 * t + k]];
+    };
+    long_edge_groups groups(vertices, indices, shortest);
+    std::vector<bool> wide(triangles);
+    for (std::size_t t = 0; t < triangles; ++t) {
+        if (width_around(corner(t, 0), corner(t, 1), corner(t, 2)) >=
+            options.narrowest * options.threshold) {
+            wide[groups.of(static_cast<std::uint32_t>(t))] = true;
+        }
+    }
+    std::vector<bool> refine(triangles);
+    for (std::size_t t = 0; t < triangles; ++t) {
+        refine[t] = wide[groups.of(static_cast<std::uint32_t>(t))] &&
+                    shared::bark_pattern(corner(t, 0).position, corner(t, 1).position,
+                                         corner(t, 2).position, shortest) != 0;
+    }
+    return refine;
+}
+
+} // namespace detail
 
 /// The bark of a mesh with `parts()`, each with its `vertices` (a buffer of surface_vertex), and
 /// `geometry(part)`, such as branch_mesh. Parts that say `caps` pass as they are: these flat caps
@@ -246,6 +357,7 @@ class bark_mesh {
               within("rounding", options.rounding, 0, 1),
               within("number of passes", static_cast<float>(options.most_passes), 1, 12),
               within("stretch", options.stretch, 1, 1e3f),
+              within("narrowest part of the threshold", options.narrowest, 0, 0.75f),
               within("reserve", options.reserve, 0, 1e2f)}) {
             if (!valid) {
                 return valid;
@@ -331,18 +443,11 @@ class bark_mesh {
         if (!indices) {
             return failure(indices.error());
         }
-        const float shortest = options_.threshold / options_.stretch;
+        const std::vector<bool> refine =
+            detail::triangles_to_refine(rest.vertices, *indices, options_);
         std::vector<std::uint32_t> large, small;
-        for (std::size_t t = 0; t + 2 < indices->size(); t += 3) {
-            const auto position = [&](std::size_t k) {
-                return rest.vertices[(*indices)[t + k]].position;
-            };
-            const bool split =
-                shared::bark_pattern(position(0), position(1), position(2), shortest) != 0;
-            std::vector<std::uint32_t>& to = split ? large : small;
-            for (std::size_t k = 0; k < 3; ++k) {
-                to.push_back((*indices)[t + k] - g.base_vertex);
-            }
+        for (std::size_t k = 0; k < 3 * refine.size(); ++k) {
+            (refine[k / 3] ? large : small).push_back((*indices)[k] - g.base_vertex);
         }
         if (large.empty()) {
             plain_.push_back({of, {}, g.count / 3});
