@@ -21,7 +21,7 @@ branch_ring ring_at(branch_end a, branch_end b, branch_curve c, uint k) {
                        : branch_ring_rotation_minimising(a, b, c, k, rings - 1u);
 }
 
-outline_point point_at(ring_outline o, uint j) {
+vec2 point_at(ring_outline o, uint j) {
     return point_of_outline(o, j, corners[outline_before(o, j)], corners[outline_after(o, j)]);
 }
 
@@ -45,9 +45,9 @@ struct moving_ring {
     branch_ring own;
     branch_ring before;
     branch_ring after;
-    float t;
-    float before_t;
-    float after_t;
+    float weight; // of the outline at the segment's end
+    float before_weight;
+    float after_weight;
     float w;
     float fraction;
 };
@@ -58,26 +58,26 @@ moving_ring moving_ring_at(branch_end a, branch_end b, branch_curve c, uint k, u
     moving_ring m;
     uint step = (rings - 1u) / gaps;
     m.own = ring_at(a, b, c, k * step);
-    m.t = float(k * step) / float(rings - 1u);
+    m.weight = outline_weight(m.own, b, float(k * step) / float(rings - 1u));
     m.fraction = 1.0;
     uint kept = least_factor(gaps);
     if (fraction < 1.0 && k % kept != 0u) {
         uint first = k / kept * kept;
         m.before = ring_at(a, b, c, first * step);
         m.after = ring_at(a, b, c, (first + kept) * step);
-        m.before_t = float(first * step) / float(rings - 1u);
-        m.after_t = float((first + kept) * step) / float(rings - 1u);
+        m.before_weight = outline_weight(m.before, b, float(first * step) / float(rings - 1u));
+        m.after_weight = outline_weight(m.after, b, float((first + kept) * step) / float(rings - 1u));
         m.w = float(k - first) / float(kept);
         m.fraction = fraction;
     }
     return m;
 }
 
-surface_vertex vertex_of(moving_ring m, outline_point p, outline_point q, float u) {
-    surface_vertex v = outline_vertex(m.own, mix_outlines(p, q, m.t), u);
+surface_vertex vertex_of(moving_ring m, vec2 p, vec2 q, vec4 corner) {
+    surface_vertex v = outline_vertex(m.own, mix_outlines(p, q, m.weight), corner);
     if (m.fraction < 1.0) {
-        v = between_vertices(v, outline_vertex(m.before, mix_outlines(p, q, m.before_t), u),
-                             outline_vertex(m.after, mix_outlines(p, q, m.after_t), u), m.w,
+        v = between_vertices(v, outline_vertex(m.before, mix_outlines(p, q, m.before_weight), corner),
+                             outline_vertex(m.after, mix_outlines(p, q, m.after_weight), corner), m.w,
                              m.fraction);
     }
     return v;
@@ -115,13 +115,13 @@ void kernel_strip(uint i, uint strip, uint first, uint count) {
     moving_ring upper = moving_ring_at(a, b, c, strip, d.y, fraction);
     for (uint j = first; j < last; ++j) {
         uint corner = j / 2u * step;
-        outline_point p = point_at(outline_a, corner);
-        outline_point q = point_at(outline_b, corner);
+        vec2 p = point_at(outline_a, corner);
+        vec2 q = point_at(outline_b, corner);
         bool above = (j & 1u) == 0u;
         moving_ring m = lower;
         if (above) {
             m = upper;
         }
-        emit_surface(vertex_of(m, p, q, corners[corner].z));
+        emit_surface(vertex_of(m, p, q, corners[corner]));
     }
 }

@@ -16,7 +16,7 @@ void kernel_map(uint i) {
     sway_state was = before[i];
     sway_state now = sway_stepped(joint, gains[i], was, before[joint.parent].rotation,
                                   parents[joint.parent], sway_rule_of(joint, seconds),
-                                  energies[joint.root].scale, seconds);
+                                  energies[joint.root], seconds);
     states[i] = now;
     poses[i] = sway_pose(joint, now);
     velocities[i] = sway_velocity(joint, was.rotation, now);

@@ -26,7 +26,7 @@ struct sway_motion {
         const shared::sway_state& was = before[i];
         const shared::sway_state now = shared::sway_stepped(
             joint, gains[i], was, before[joint.parent].rotation, parents[joint.parent],
-            shared::sway_rule_of(joint, seconds), energies[joint.root].scale, seconds);
+            shared::sway_rule_of(joint, seconds), energies[joint.root], seconds);
         states[i] = now;
         poses[i] = shared::sway_pose(joint, now);
         velocities[i] = shared::sway_velocity(joint, was.rotation, now);

@@ -20,7 +20,7 @@ static_assert(offsetof(shared::sway_state, bend) == 16 &&
               offsetof(shared::sway_state, shift) == 80 &&
               offsetof(shared::sway_state, step_turn) == 96 &&
               offsetof(shared::sway_state, step_speed) == 112);
-static_assert(record<shared::sway_energy> && sizeof(shared::sway_energy) == 16);
+static_assert(record<shared::sway_energy> && sizeof(shared::sway_energy) == 32);
 static_assert(record<shared::sway_carry> && sizeof(shared::sway_carry) == 112);
 static_assert(record<shared::sway_gain> && sizeof(shared::sway_gain) == 96);
 static_assert(record<shared::sway_moment> && sizeof(shared::sway_moment) == 64);

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 4a8847e3e2d465c89d89054e5f555b654d4fda2c67093f3f64be04a1e25ebf0a
+// sha256 411369ed3780fcf804036782d0dd8c3eecc481d0f6cd6bbae49ad3c705d73c17
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -44,24 +44,29 @@ struct sway_state {
     vec3 rate;        // rad/s, of the joint
     float after;      // J, its kinetic energy with these rates in this pose
     vec3 turn;        // rad/s
-    float reserved0;
+    float budget;     // J, at a root: the most that its tree may have had before the step; or < 0
     vec3 speed;       // m/s
-    float reserved1;
+    float reserved0;
     vec3 shift;       // m, how far its base is from where it rests
-    float reserved2;
+    float reserved1;
     vec3 step_turn;   // rad/s, mean over the step that led here
-    float reserved3;
+    float reserved2;
     vec3 step_speed;  // m/s, the same
-    float reserved4;
+    float reserved3;
 };
 
-// Kinetic energy of a segment and all that it carries, and at a root the scale of all rates that
-// brings `after` back to `before`.
+// Energies of a segment and all that it carries, J. At a root also what follows from them for its
+// tree: the scale of all rates that brings `after` back to `before`, and the energy that it may
+// have at most.
 struct sway_energy {
     float before;
     float after;
+    float elastic;
+    float work;   // of the loads, in this step
     float scale;
-    float reserved;
+    float budget;
+    float reserved0;
+    float reserved1;
 };
 
 // Articulated inertia and momentum, as a segment hands them to its parent: rows of B with L, then
@@ -113,16 +118,16 @@ inline vec3 sway_times(sway_sym m, vec3 v) {
                 m.xz * v.x + m.yz * v.y + m.zz * v.z);
 }
 
-// The inverse of a positive definite matrix, by its factors L D L^T: the product keeps it positive
-// where cofactors lose that to rounding.
-inline sway_sym sway_inverse(sway_sym m) {
-    float d0 = 1.0f / m.xx;
+// The inverse of a matrix whose eigenvalues are `least` or more, by its factors L D L^T: rounding
+// cannot make it lose that, as it would with cofactors.
+inline sway_sym sway_inverse(sway_sym m, float least) {
+    float d0 = 1.0f / max(m.xx, least);
     float l1 = m.xy * d0;
     float l2 = m.xz * d0;
-    float d1 = 1.0f / (m.yy - l1 * m.xy);
+    float d1 = 1.0f / max(m.yy - l1 * m.xy, least);
     float t = m.yz - l1 * m.xz;
     float l3 = t * d1;
-    float d2 = 1.0f / (m.zz - l2 * m.xz - l3 * t);
+    float d2 = 1.0f / max(m.zz - l2 * m.xz - l3 * t, least);
     float k2 = l1 * l3 - l2;
     sway_sym y;
     y.zz = d2;
@@ -270,7 +275,7 @@ inline sway_parted sway_part(sway_joint joint, sway_carry sum, sway_rule rule, v
     d.xx = a.xx + rule.hold;
     d.yy = a.yy + rule.hold;
     d.zz = a.zz + rule.hold;
-    sway_sym y = sway_inverse(d);
+    sway_sym y = sway_inverse(d, rule.hold + 1e-6f * (a.xx + a.yy + a.zz));
     // Of y a = 1 - hold y the product loses nothing where the hold is large or small.
     sway_sym give = sway_product(y, a);
 
@@ -337,7 +342,7 @@ inline sway_state sway_placed(sway_joint joint, sway_state parent, sway_state no
 
 // One step of a joint whose parent has made its own. `was` and `parent_was` are before the step.
 inline sway_state sway_stepped(sway_joint joint, sway_gain gain, sway_state was, vec4 parent_was,
-                        sway_state parent, sway_rule rule, float scale, float seconds) {
+                        sway_state parent, sway_rule rule, sway_energy tree, float seconds) {
     sway_sym give;
     give.xx = gain.e.x;
     give.xy = gain.e.y;
@@ -357,10 +362,11 @@ inline sway_state sway_stepped(sway_joint joint, sway_gain gain, sway_state was,
     // From the mean over the step to its end.
     float ahead = 1.0f / rule.weight;
     vec3 mean = sway_back(parent_was, rate);
-    vec3 old_rate = was.rate * scale;
-    vec3 old_turn = was.turn * scale;
-    vec3 old_speed = was.speed * scale;
+    vec3 old_rate = was.rate * tree.scale;
+    vec3 old_turn = was.turn * tree.scale;
+    vec3 old_speed = was.speed * tree.scale;
     sway_state now = was;
+    now.budget = tree.budget;
     now.bend = was.bend + mean * seconds;
     now.rate = old_rate + (mean - old_rate) * ahead;
     now.step_turn = turn;
@@ -390,26 +396,39 @@ inline vec4 sway_velocity(sway_joint joint, vec4 was, sway_state now) {
     return vec4(now.step_speed + sway_cross(now.step_turn, middle), 0.0f);
 }
 
-inline sway_energy sway_energy_of(sway_state state) {
+// `velocity`: of the middle, over the step.
+inline sway_energy sway_energy_of(sway_joint joint, sway_state state, segment_load load, vec4 velocity,
+                           float seconds) {
     sway_energy own;
     own.before = state.before;
     own.after = state.after;
+    own.elastic = 0.5f * joint.stiffness * sway_dot(state.bend, state.bend);
+    own.work = seconds * (load.force.x * velocity.x + load.force.y * velocity.y +
+                          load.force.z * velocity.z);
     own.scale = 1.0f;
-    own.reserved = 0.0f;
+    own.budget = 0.0f;
+    own.reserved0 = 0.0f;
+    own.reserved1 = 0.0f;
     return own;
 }
 
 inline sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.before = a.before + b.before;
     a.after = a.after + b.after;
+    a.elastic = a.elastic + b.elastic;
+    a.work = a.work + b.work;
     return a;
 }
 
-// The scale that undoes what the change of pose did to the kinetic energy. Below 1e-30 J there is
-// no motion to speak of, and squares of it would leave the range of floats.
-inline float sway_scale(sway_energy tree) {
+// What follows for the whole tree. The scale undoes what the change of pose did to the kinetic
+// energy. Where rounding has made more energy than the loads' work allows, it takes that away too.
+// Below 1e-30 J there is no motion to speak of, and its squares leave the range of floats.
+inline sway_energy sway_settled(sway_energy tree, float budget) {
+    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
+    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
     bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    return moves ? sqrt(tree.before / tree.after) : 1.0f;
+    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
+    return tree;
 }
 
 // Static equilibrium: what a segment hands to its parent, about the parent's base.
@@ -470,7 +489,7 @@ inline sway_balanced sway_balance(sway_joint joint, sway_moment sum, vec4 rotati
     d.xx = a.xx + joint.stiffness;
     d.yy = a.yy + joint.stiffness;
     d.zz = a.zz + joint.stiffness;
-    sway_sym y = sway_inverse(d);
+    sway_sym y = sway_inverse(d, joint.stiffness);
     sway_sym give = sway_product(y, a);
     vec3 torque = moment - quaternion_rotate(rotation, bend) * joint.stiffness;
     vec3 free = sway_times(y, torque);
@@ -523,8 +542,10 @@ inline sway_state sway_turned(sway_joint joint, sway_gain gain, sway_state was, 
     now.step_turn = parent.step_turn + turn;
     now.step_speed = vec3(0.0f, 0.0f, 0.0f);
     now = sway_placed(joint, parent, now);
-    now.before = 0.0f;
-    now.after = 0.0f;
+    now.after = sway_kinetic(joint, quaternion_rotate(now.rotation, joint.axis), now.turn,
+                             now.speed);
+    now.before = now.after;
+    now.budget = -1.0f;
     return now;
 }
 

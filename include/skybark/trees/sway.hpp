@@ -170,7 +170,8 @@ class sway {
         }
         return run(device, [&](recorder& to) {
             bend(to);
-            sum_energies(to);
+            // No time passes, so that loads do no work, whatever they are.
+            sum_energies(to, view<B>(*velocities_), 0);
         });
     }
 
@@ -308,7 +309,7 @@ class sway {
                 view<B>(*poses_), view<B>(*velocities_)},
                down());
         current_ = 1 - current_;
-        sum_energies(to);
+        sum_energies(to, loads, step);
     }
 
     void bend(recorder& to) {
@@ -319,9 +320,11 @@ class sway {
         current_ = 1 - current_;
     }
 
-    void sum_energies(recorder& to) const {
-        to.map(kernels::sway_energies{},
-               {view<B>(*joints_), now(), view<B>(*energies_), view<B>(*energies_)}, up());
+    void sum_energies(recorder& to, const buffer_view<B>& loads, float step) const {
+        to.map(kernels::sway_energies{step},
+               {view<B>(*joints_), now(), loads, view<B>(*velocities_), view<B>(*energies_),
+                view<B>(*energies_)},
+               up());
     }
 
     sway_options options_;

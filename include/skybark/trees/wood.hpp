@@ -68,7 +68,7 @@ class sway_layout_builder {
             weigh(i);
             layout_.joints[i].stiffness = static_cast<float>(stiffness(i));
         }
-        stiffen_rotation();
+        keep_ratios();
         find_frequencies();
         for (shared::sway_joint& joint : layout_.joints) {
             const double first = layout_.trees[tree_of_[joint.root]].frequency;
@@ -135,25 +135,26 @@ class sway_layout_builder {
         return material_.elasticity * pi / 4 / compliance;
     }
 
-    /// Gives each segment a trace of rotational inertia more, 2e-6 of what its joint carries, so
-    /// that no turn of a joint is lost in the rounding of single precision: twist of a long thin
-    /// pole has that little. Frequencies fall by a millionth.
-    void stiffen_rotation() {
-        constexpr double trace = 2e-6;
+    /// Lets no segment weigh less than 5e-5 of what it carries, nor resist turns less: thin links
+    /// below heavy wood, or the twist of a long thin pole, would be lost in the rounding of single
+    /// precision. Beams in less than some hundred segments and real trees are not touched.
+    void keep_ratios() {
+        constexpr double least = 5e-5;
         const std::size_t n = from_.size();
-        std::vector<double> mass(n), square(n); // of all that the joint carries, about its base
-        std::vector<glm::dvec3> lever(n);
+        // Of all that the joint carries, about its base, stretched out as far as it goes.
+        std::vector<double> mass(n), lever(n), square(n);
         for (std::size_t i = n; i-- > 0;) {
             shared::sway_joint& joint = layout_.joints[i];
             mass[i] += joint.mass;
-            lever[i] += axis_[i] * double{joint.lever};
+            lever[i] += joint.lever;
             square[i] += joint.across;
-            joint.across += static_cast<float>(trace * square[i]);
-            joint.along += static_cast<float>(trace * square[i]);
+            joint.mass = std::max(joint.mass, static_cast<float>(least * mass[i]));
+            joint.across = std::max(joint.across, static_cast<float>(least * square[i]));
+            joint.along = std::max(joint.along, static_cast<float>(least * square[i]));
             if (const std::uint32_t p = from_.parent[i]; p != none) {
-                const glm::dvec3& r = offset_[i];
+                const double r = glm::length(offset_[i]);
                 mass[p] += mass[i];
-                square[p] += square[i] + 2 * glm::dot(r, lever[i]) + mass[i] * glm::dot(r, r);
+                square[p] += square[i] + 2 * r * lever[i] + mass[i] * r * r;
                 lever[p] += lever[i] + mass[i] * r;
             }
         }

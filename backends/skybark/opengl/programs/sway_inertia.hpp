@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c323ff3ca0fce179d5983c94e54995dd98493017bbcbdb9480d7b30068bf6642
+// sha256 c271231e8708cf803a43954fe32c20bfbb5819abcabb0cb79d12158d91b8bd77
 #pragma once
 
 #include <skybark/kernels/sway_inertia.hpp>
@@ -194,21 +194,25 @@ struct sway_state {
     vec3 rate;        // rad/s, of the joint
     float after;      // J, its kinetic energy with these rates in this pose
     vec3 turn;        // rad/s
-    float reserved0;
+    float budget;     // J, at a root: the most that its tree may have had before the step; or < 0
     vec3 speed;       // m/s
-    float reserved1;
+    float reserved0;
     vec3 shift;       // m, how far its base is from where it rests
-    float reserved2;
+    float reserved1;
     vec3 step_turn;   // rad/s, mean over the step that led here
-    float reserved3;
+    float reserved2;
     vec3 step_speed;  // m/s, the same
-    float reserved4;
+    float reserved3;
 };
 struct sway_energy {
     float before;
     float after;
+    float elastic;
+    float work;   // of the loads, in this step
     float scale;
-    float reserved;
+    float budget;
+    float reserved0;
+    float reserved1;
 };
 struct sway_carry {
     vec4 b0;
@@ -248,14 +252,14 @@ vec3 sway_times(sway_sym m, vec3 v) {
     return vec3(m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
                 m.xz * v.x + m.yz * v.y + m.zz * v.z);
 }
-sway_sym sway_inverse(sway_sym m) {
-    float d0 = 1.0f / m.xx;
+sway_sym sway_inverse(sway_sym m, float least) {
+    float d0 = 1.0f / max(m.xx, least);
     float l1 = m.xy * d0;
     float l2 = m.xz * d0;
-    float d1 = 1.0f / (m.yy - l1 * m.xy);
+    float d1 = 1.0f / max(m.yy - l1 * m.xy, least);
     float t = m.yz - l1 * m.xz;
     float l3 = t * d1;
-    float d2 = 1.0f / (m.zz - l2 * m.xz - l3 * t);
+    float d2 = 1.0f / max(m.zz - l2 * m.xz - l3 * t, least);
     float k2 = l1 * l3 - l2;
     sway_sym y;
     y.zz = d2;
@@ -380,7 +384,7 @@ sway_parted sway_part(sway_joint joint, sway_carry sum, sway_rule rule, vec4 rot
     d.xx = a.xx + rule.hold;
     d.yy = a.yy + rule.hold;
     d.zz = a.zz + rule.hold;
-    sway_sym y = sway_inverse(d);
+    sway_sym y = sway_inverse(d, rule.hold);
     sway_sym give = sway_product(y, a);
     vec3 torque = spin - quaternion_rotate(rotation, bend) * rule.spring;
     vec3 free = sway_times(y, torque);
@@ -435,7 +439,7 @@ sway_state sway_placed(sway_joint joint, sway_state parent, sway_state now) {
     return now;
 }
 sway_state sway_stepped(sway_joint joint, sway_gain gain, sway_state was, vec4 parent_was,
-                        sway_state parent, sway_rule rule, float scale, float seconds) {
+                        sway_state parent, sway_rule rule, sway_energy tree, float seconds) {
     sway_sym give;
     give.xx = gain.e.x;
     give.xy = gain.e.y;
@@ -453,10 +457,11 @@ sway_state sway_stepped(sway_joint joint, sway_gain gain, sway_state was, vec4 p
     vec3 turn = parent.step_turn + rate;
     float ahead = 1.0f / rule.weight;
     vec3 mean = sway_back(parent_was, rate);
-    vec3 old_rate = was.rate * scale;
-    vec3 old_turn = was.turn * scale;
-    vec3 old_speed = was.speed * scale;
+    vec3 old_rate = was.rate * tree.scale;
+    vec3 old_turn = was.turn * tree.scale;
+    vec3 old_speed = was.speed * tree.scale;
     sway_state now = was;
+    now.budget = tree.budget;
     now.bend = was.bend + mean * seconds;
     now.rate = old_rate + (mean - old_rate) * ahead;
     now.step_turn = turn;
@@ -482,22 +487,33 @@ vec4 sway_velocity(sway_joint joint, vec4 was, sway_state now) {
     vec3 middle = quaternion_rotate(was, joint.axis) * (0.5f * joint.extent);
     return vec4(now.step_speed + sway_cross(now.step_turn, middle), 0.0f);
 }
-sway_energy sway_energy_of(sway_state state) {
+sway_energy sway_energy_of(sway_joint joint, sway_state state, segment_load load, vec4 velocity,
+                           float seconds) {
     sway_energy own;
     own.before = state.before;
     own.after = state.after;
+    own.elastic = 0.5f * joint.stiffness * sway_dot(state.bend, state.bend);
+    own.work = seconds * (load.force.x * velocity.x + load.force.y * velocity.y +
+                          load.force.z * velocity.z);
     own.scale = 1.0f;
-    own.reserved = 0.0f;
+    own.budget = 0.0f;
+    own.reserved0 = 0.0f;
+    own.reserved1 = 0.0f;
     return own;
 }
 sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.before = a.before + b.before;
     a.after = a.after + b.after;
+    a.elastic = a.elastic + b.elastic;
+    a.work = a.work + b.work;
     return a;
 }
-float sway_scale(sway_energy tree) {
+sway_energy sway_settled(sway_energy tree, float budget) {
+    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
+    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
     bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    return moves ? sqrt(tree.before / tree.after) : 1.0f;
+    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
+    return tree;
 }
 struct sway_moment {
     vec4 a;      // stiffness against turning: xx xy xz yy
@@ -545,7 +561,7 @@ sway_balanced sway_balance(sway_joint joint, sway_moment sum, vec4 rotation, vec
     d.xx = a.xx + joint.stiffness;
     d.yy = a.yy + joint.stiffness;
     d.zz = a.zz + joint.stiffness;
-    sway_sym y = sway_inverse(d);
+    sway_sym y = sway_inverse(d, joint.stiffness);
     sway_sym give = sway_product(y, a);
     vec3 torque = moment - quaternion_rotate(rotation, bend) * joint.stiffness;
     vec3 free = sway_times(y, torque);
@@ -592,8 +608,10 @@ sway_state sway_turned(sway_joint joint, sway_gain gain, sway_state was, vec4 pa
     now.step_turn = parent.step_turn + turn;
     now.step_speed = vec3(0.0f, 0.0f, 0.0f);
     now = sway_placed(joint, parent, now);
-    now.before = 0.0f;
-    now.after = 0.0f;
+    now.after = sway_kinetic(joint, quaternion_rotate(now.rotation, joint.axis), now.turn,
+                             now.speed);
+    now.before = now.after;
+    now.budget = -1.0f;
     return now;
 }
 layout(std430, binding = 0) readonly buffer joints_buffer { sway_joint joints[]; };
@@ -816,21 +834,25 @@ struct sway_state {
     vec3 rate;        // rad/s, of the joint
     float after;      // J, its kinetic energy with these rates in this pose
     vec3 turn;        // rad/s
-    float reserved0;
+    float budget;     // J, at a root: the most that its tree may have had before the step; or < 0
     vec3 speed;       // m/s
-    float reserved1;
+    float reserved0;
     vec3 shift;       // m, how far its base is from where it rests
-    float reserved2;
+    float reserved1;
     vec3 step_turn;   // rad/s, mean over the step that led here
-    float reserved3;
+    float reserved2;
     vec3 step_speed;  // m/s, the same
-    float reserved4;
+    float reserved3;
 };
 struct sway_energy {
     float before;
     float after;
+    float elastic;
+    float work;   // of the loads, in this step
     float scale;
-    float reserved;
+    float budget;
+    float reserved0;
+    float reserved1;
 };
 struct sway_carry {
     vec4 b0;
@@ -870,14 +892,14 @@ vec3 sway_times(sway_sym m, vec3 v) {
     return vec3(m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
                 m.xz * v.x + m.yz * v.y + m.zz * v.z);
 }
-sway_sym sway_inverse(sway_sym m) {
-    float d0 = 1.0f / m.xx;
+sway_sym sway_inverse(sway_sym m, float least) {
+    float d0 = 1.0f / max(m.xx, least);
     float l1 = m.xy * d0;
     float l2 = m.xz * d0;
-    float d1 = 1.0f / (m.yy - l1 * m.xy);
+    float d1 = 1.0f / max(m.yy - l1 * m.xy, least);
     float t = m.yz - l1 * m.xz;
     float l3 = t * d1;
-    float d2 = 1.0f / (m.zz - l2 * m.xz - l3 * t);
+    float d2 = 1.0f / max(m.zz - l2 * m.xz - l3 * t, least);
     float k2 = l1 * l3 - l2;
     sway_sym y;
     y.zz = d2;
@@ -1002,7 +1024,7 @@ sway_parted sway_part(sway_joint joint, sway_carry sum, sway_rule rule, vec4 rot
     d.xx = a.xx + rule.hold;
     d.yy = a.yy + rule.hold;
     d.zz = a.zz + rule.hold;
-    sway_sym y = sway_inverse(d);
+    sway_sym y = sway_inverse(d, rule.hold);
     sway_sym give = sway_product(y, a);
     vec3 torque = spin - quaternion_rotate(rotation, bend) * rule.spring;
     vec3 free = sway_times(y, torque);
@@ -1057,7 +1079,7 @@ sway_state sway_placed(sway_joint joint, sway_state parent, sway_state now) {
     return now;
 }
 sway_state sway_stepped(sway_joint joint, sway_gain gain, sway_state was, vec4 parent_was,
-                        sway_state parent, sway_rule rule, float scale, float seconds) {
+                        sway_state parent, sway_rule rule, sway_energy tree, float seconds) {
     sway_sym give;
     give.xx = gain.e.x;
     give.xy = gain.e.y;
@@ -1075,10 +1097,11 @@ sway_state sway_stepped(sway_joint joint, sway_gain gain, sway_state was, vec4 p
     vec3 turn = parent.step_turn + rate;
     float ahead = 1.0f / rule.weight;
     vec3 mean = sway_back(parent_was, rate);
-    vec3 old_rate = was.rate * scale;
-    vec3 old_turn = was.turn * scale;
-    vec3 old_speed = was.speed * scale;
+    vec3 old_rate = was.rate * tree.scale;
+    vec3 old_turn = was.turn * tree.scale;
+    vec3 old_speed = was.speed * tree.scale;
     sway_state now = was;
+    now.budget = tree.budget;
     now.bend = was.bend + mean * seconds;
     now.rate = old_rate + (mean - old_rate) * ahead;
     now.step_turn = turn;
@@ -1104,22 +1127,33 @@ vec4 sway_velocity(sway_joint joint, vec4 was, sway_state now) {
     vec3 middle = quaternion_rotate(was, joint.axis) * (0.5f * joint.extent);
     return vec4(now.step_speed + sway_cross(now.step_turn, middle), 0.0f);
 }
-sway_energy sway_energy_of(sway_state state) {
+sway_energy sway_energy_of(sway_joint joint, sway_state state, segment_load load, vec4 velocity,
+                           float seconds) {
     sway_energy own;
     own.before = state.before;
     own.after = state.after;
+    own.elastic = 0.5f * joint.stiffness * sway_dot(state.bend, state.bend);
+    own.work = seconds * (load.force.x * velocity.x + load.force.y * velocity.y +
+                          load.force.z * velocity.z);
     own.scale = 1.0f;
-    own.reserved = 0.0f;
+    own.budget = 0.0f;
+    own.reserved0 = 0.0f;
+    own.reserved1 = 0.0f;
     return own;
 }
 sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.before = a.before + b.before;
     a.after = a.after + b.after;
+    a.elastic = a.elastic + b.elastic;
+    a.work = a.work + b.work;
     return a;
 }
-float sway_scale(sway_energy tree) {
+sway_energy sway_settled(sway_energy tree, float budget) {
+    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
+    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
     bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    return moves ? sqrt(tree.before / tree.after) : 1.0f;
+    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
+    return tree;
 }
 struct sway_moment {
     vec4 a;      // stiffness against turning: xx xy xz yy
@@ -1167,7 +1201,7 @@ sway_balanced sway_balance(sway_joint joint, sway_moment sum, vec4 rotation, vec
     d.xx = a.xx + joint.stiffness;
     d.yy = a.yy + joint.stiffness;
     d.zz = a.zz + joint.stiffness;
-    sway_sym y = sway_inverse(d);
+    sway_sym y = sway_inverse(d, joint.stiffness);
     sway_sym give = sway_product(y, a);
     vec3 torque = moment - quaternion_rotate(rotation, bend) * joint.stiffness;
     vec3 free = sway_times(y, torque);
@@ -1214,8 +1248,10 @@ sway_state sway_turned(sway_joint joint, sway_gain gain, sway_state was, vec4 pa
     now.step_turn = parent.step_turn + turn;
     now.step_speed = vec3(0.0f, 0.0f, 0.0f);
     now = sway_placed(joint, parent, now);
-    now.before = 0.0f;
-    now.after = 0.0f;
+    now.after = sway_kinetic(joint, quaternion_rotate(now.rotation, joint.axis), now.turn,
+                             now.speed);
+    now.before = now.after;
+    now.budget = -1.0f;
     return now;
 }
 layout(std430, binding = 0) readonly buffer joints_buffer { sway_joint joints[]; };
