@@ -96,6 +96,24 @@ result<std::uint32_t> whole_number(std::string_view option, std::string_view tex
     return static_cast<std::uint32_t>(*number);
 }
 
+result<double> number(std::string_view option, std::string_view text, double low, double high,
+                      std::string_view unit) {
+    const auto value = io::parse_number(text);
+    if (value && *value >= low && *value <= high) {
+        return *value;
+    }
+    const auto rounded = [](double bound) {
+        char digits[32];
+        return std::string(
+            digits, static_cast<std::size_t>(std::snprintf(digits, sizeof digits, "%.6g", bound)));
+    };
+    std::string sentence(option);
+    sentence.append(" is ").append(io::in_quotes(text)).append("; expected a number from ");
+    sentence.append(rounded(low)).append(" to ").append(rounded(high));
+    sentence.append(unit.empty() ? "" : " ").append(unit).append(".");
+    return fail(error_code::bad_input, std::move(sentence));
+}
+
 failure not_among(std::string_view option, std::string_view text,
                   std::span<const std::string_view> names) {
     std::string known;

@@ -59,6 +59,11 @@ void add_common_options(CLI::App& to, common_words& words);
 whole_number(std::string_view option, std::string_view text, std::uint32_t low,
              std::uint32_t high = std::numeric_limits<std::uint32_t>::max());
 
+/// A finite number in [low, high], or such a sentence. `unit` stands behind the range; it may be
+/// empty.
+[[nodiscard]] result<double> number(std::string_view option, std::string_view text, double low,
+                                    double high, std::string_view unit);
+
 /// What one of the `names` stands for.
 template <class T>
 using named = std::pair<std::string_view, T>;

@@ -1,0 +1,84 @@
+#pragma once
+// What `skybark tree` is asked for beyond a mesh: bark, leaves, wind and sway, frames, detail.
+
+#include "frame_name.hpp"
+
+#include <skybark/core/result.hpp>
+
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace skybark::tool {
+
+/// The options as they were typed; nothing where they weren't.
+struct tree_option_words {
+    std::optional<std::string> bark;
+    std::optional<std::string> bark_map;
+    std::optional<std::string> leaf_map;
+    std::optional<std::string> sway;
+    std::optional<std::string> wind;
+    std::optional<std::string> wind_from;
+    std::optional<std::string> gusts;
+    std::optional<std::string> at;
+    std::optional<std::string> frames;
+    std::optional<std::string> fps;
+    std::optional<std::string> lod;
+    bool leaves = false;
+    bool no_leaves = false;
+    bool closed = false;
+};
+
+/// How a tree answers to the wind (METHODS: the paper's, at rest in each wind, with inertia).
+enum class sway_kind { paper, quasi_static, dynamic };
+enum class gust_kind { kaimal, power_law, none };
+
+/// What becomes of the frames.
+enum class frame_output {
+    single,   ///< there is one, and the name is as it is
+    numbered, ///< each has a file of its own, `name.of(frame)`
+    together, ///< all are in the one file: .glb, .apng
+};
+
+struct tree_options {
+    float bark_depth = 0;       ///< m, of the relief; 0: none
+    std::string bark_map;       ///< a height map; empty: the built-in bark
+    std::string leaf_map;       ///< colour with alpha; empty: the built-in leaf
+    std::optional<bool> leaves; ///< nothing: as the tree has it
+    sway_kind sway = sway_kind::dynamic;
+    float wind = 0;                    ///< m/s, its mean
+    glm::vec3 wind_direction{1, 0, 0}; ///< unit, where it blows to; level
+    gust_kind gusts = gust_kind::kaimal;
+    double at = 0;            ///< s, sway until then; of a single frame
+    std::uint32_t frames = 1; ///< frame k is at k / fps seconds
+    double fps = 24;
+    float lod = 0;       ///< 0: full detail
+    bool closed = false; ///< one closed surface a tree
+    frame_output output = frame_output::single;
+    frame_name name; ///< of numbered frames
+
+    [[nodiscard]] double seconds_of(std::uint32_t frame) const {
+        return output == frame_output::single && frames == 1 ? at : frame / fps;
+    }
+};
+
+/// What the other options of the command say, as far as it matters here.
+struct tree_option_context {
+    std::string out;        ///< -o
+    bool skeleton = false;  ///< --skeleton
+    bool list_form = false; ///< --form list
+};
+
+/// Adds --bark … --closed to a command.
+void add_tree_options(CLI::App& to, tree_option_words& words);
+
+/// Numbers in their ranges, names that are known, and nothing that contradicts something else.
+/// Errors: sentences that name the option, what it is and what was expected.
+[[nodiscard]] result<tree_options> check(const tree_option_words& words,
+                                         const tree_option_context& context);
+
+} // namespace skybark::tool
