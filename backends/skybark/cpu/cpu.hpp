@@ -5,3 +5,4 @@
 #include <skybark/cpu/device.hpp>
 #include <skybark/cpu/hermite_branch.hpp>
 #include <skybark/cpu/leaf_blade.hpp>
+#include <skybark/cpu/wave_wind.hpp>

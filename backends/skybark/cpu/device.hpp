@@ -179,11 +179,10 @@ class recorder {
         with_spans<K>(buffers, [&](auto... spans) {
             device_->for_pieces(
                 elements.count, 1024, [&](std::uint64_t first, std::uint64_t count) {
-                    const auto begin = static_cast<std::uint32_t>(elements.first + first);
-                    const auto end = static_cast<std::uint32_t>(begin + count);
-                    for (std::uint32_t i = begin; i < end; ++i) {
-                        kernel.map(i, spans...);
-                    }
+                    program<K>::map(kernel,
+                                    range{static_cast<std::uint32_t>(elements.first + first),
+                                          static_cast<std::uint32_t>(count)},
+                                    spans...);
                 });
         });
     }

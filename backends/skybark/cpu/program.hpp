@@ -1,6 +1,6 @@
 #pragma once
 // How the CPU backend runs a kernel: with the kernel's own functions, or faster where there is a
-// specialisation (hermite_branch.hpp and bark.hpp beside this). Both give the same bits.
+// specialisation (hermite_branch.hpp, bark.hpp and wave_wind.hpp beside this). Both give the same bits.
 
 #include <skybark/cpu/sinks.hpp>
 
@@ -9,6 +9,14 @@ namespace skybark::cpu {
 /// What there is without a specialisation.
 template <class K>
 struct plain_program {
+    /// Maps over consecutive elements.
+    template <class... Spans>
+    static void map(const K& kernel, range elements, Spans... spans) {
+        for (std::uint32_t i = elements.first; i < elements.first + elements.count; ++i) {
+            kernel.map(i, spans...);
+        }
+    }
+
     /// Writes the vertices of consecutive elements from `to` on.
     template <class... Spans>
     static void rings(const K& kernel, range elements, std::byte* to, Spans... spans) {
