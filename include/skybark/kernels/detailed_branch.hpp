@@ -70,9 +70,9 @@ struct detailed_branch {
         const moving_ring upper = moving_ring_at(a, b, curve, strip, d);
         for (std::uint32_t j = first; j < first + count; ++j) {
             const std::uint32_t corner = j / 2 * step;
-            const shared::outline_point p = point_at(outline_a, corner, corners);
-            const shared::outline_point q = point_at(outline_b, corner, corners);
-            sink(vertex_of(j % 2 == 0 ? upper : lower, p, q, corners[corner].z));
+            const glm::vec2 p = point_at(outline_a, corner, corners);
+            const glm::vec2 q = point_at(outline_b, corner, corners);
+            sink(vertex_of(j % 2 == 0 ? upper : lower, p, q, corners[corner]));
         }
     }
 
@@ -82,15 +82,15 @@ struct detailed_branch {
         shared::branch_ring own;
         shared::branch_ring before{};
         shared::branch_ring after{};
-        float t = 0;
-        float before_t = 0;
-        float after_t = 0;
+        float weight = 0; ///< of the outline at the segment's end
+        float before_weight = 0;
+        float after_weight = 0;
         float w = 0;
         float fraction = 1;
     };
 
-    [[nodiscard]] static shared::outline_point
-    point_at(const shared::ring_outline& outline, std::uint32_t corner, corners_span corners) {
+    [[nodiscard]] static glm::vec2 point_at(const shared::ring_outline& outline,
+                                            std::uint32_t corner, corners_span corners) {
         return shared::point_of_outline(outline, corner,
                                         corners[shared::outline_before(outline, corner)],
                                         corners[shared::outline_after(outline, corner)]);
@@ -103,31 +103,31 @@ struct detailed_branch {
         const std::uint32_t step = (rings - 1) / d.gaps;
         const std::uint32_t kept = shared::least_factor(d.gaps);
         moving_ring m{ring_at(a, b, curve, k * step)};
-        m.t = part(k * step);
+        m.weight = shared::outline_weight(m.own, b, part(k * step));
         if (d.fraction < 1 && k % kept != 0) {
             const std::uint32_t first = k / kept * kept;
             m.before = ring_at(a, b, curve, first * step);
             m.after = ring_at(a, b, curve, (first + kept) * step);
-            m.before_t = part(first * step);
-            m.after_t = part((first + kept) * step);
+            m.before_weight = shared::outline_weight(m.before, b, part(first * step));
+            m.after_weight = shared::outline_weight(m.after, b, part((first + kept) * step));
             m.w = static_cast<float>(k - first) / static_cast<float>(kept);
             m.fraction = d.fraction;
         }
         return m;
     }
 
-    [[nodiscard]] static surface_vertex vertex_of(const moving_ring& m,
-                                                  const shared::outline_point& p,
-                                                  const shared::outline_point& q, float u) {
+    [[nodiscard]] static surface_vertex vertex_of(const moving_ring& m, const glm::vec2& p,
+                                                  const glm::vec2& q, const glm::vec4& corner) {
         const surface_vertex own =
-            shared::outline_vertex(m.own, shared::mix_outlines(p, q, m.t), u);
+            shared::outline_vertex(m.own, shared::mix_outlines(p, q, m.weight), corner);
         if (!(m.fraction < 1)) {
             return own;
         }
         return shared::between_vertices(
-            own, shared::outline_vertex(m.before, shared::mix_outlines(p, q, m.before_t), u),
-            shared::outline_vertex(m.after, shared::mix_outlines(p, q, m.after_t), u), m.w,
-            m.fraction);
+            own,
+            shared::outline_vertex(m.before, shared::mix_outlines(p, q, m.before_weight), corner),
+            shared::outline_vertex(m.after, shared::mix_outlines(p, q, m.after_weight), corner),
+            m.w, m.fraction);
     }
 
     [[nodiscard]] float part(std::uint32_t k) const {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5fe41430f8e568ba24cafc38e07fe98da88a53d61c9b8857ca1fbfe0b3f67d9d
+// sha256 b77d6a7320ece7a20fcc93b5dd8df5df85858fb90823dd0a7804375bc7af017d
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -179,11 +179,12 @@ inline branch_end end_between(branch_end a, branch_end b, branch_end own) {
     return e;
 }
 
-// How far an end's ring would move to that place.
+// How far an end's ring would move to that place, and its slope turn the normals.
 inline float way_between(branch_end a, branch_end b, branch_end own) {
     branch_end e = end_between(a, b, own);
     vec3 way = e.position - own.position;
-    return sqrt(dot3(way, way)) + abs(e.radius - own.radius);
+    return sqrt(dot3(way, way)) + abs(e.radius - own.radius) +
+           own.radius * abs(e.slope - own.slope);
 }
 
 // An end on its way there.
@@ -276,66 +277,42 @@ inline float outline_distance(ring_outline o, uint j) {
     return o.between == 1u && (j / o.step) % 2u == 1u ? o.inner : 1.0f;
 }
 
-// A point of an outline, and which way it looks.
-struct outline_point {
-    float x;
-    float y;
-    float facing_x;
-    float facing_y;
-};
-
 // Corner j of the full polygon, where the outline has it; or on the chord between the two corners
 // that the outline has before and after it.
-inline outline_point point_of_outline(ring_outline o, uint j, vec4 before, vec4 after) {
-    outline_point p;
+inline vec2 point_of_outline(ring_outline o, uint j, vec4 before, vec4 after) {
     uint first = outline_before(o, j);
     uint last = outline_after(o, j);
     float d = outline_distance(o, first);
-    p.x = before.x * d;
-    p.y = before.y * d;
-    p.facing_x = before.x;
-    p.facing_y = before.y;
+    vec2 p = vec2(before.x * d, before.y * d);
     if (last != first) {
         float w = float(j - first) / float(o.step);
         float e = outline_distance(o, last);
-        p.x = p.x * (1.0f - w) + after.x * (e * w);
-        p.y = p.y * (1.0f - w) + after.y * (e * w);
-        float fx = before.x * (1.0f - w) + after.x * w;
-        float fy = before.y * (1.0f - w) + after.y * w;
-        float l = 1.0f / sqrt(fx * fx + fy * fy);
-        p.facing_x = fx * l;
-        p.facing_y = fy * l;
+        p = p * (1.0f - w) + vec2(after.x * e, after.y * e) * w;
     }
     return p;
+}
+
+// How much of the ring r at t has the outline of the end b: radius by radius, so that it is off by
+// no more than the outlines at the ends are, however thin the coarse one.
+inline float outline_weight(branch_ring r, branch_end b, float t) {
+    return r.radius > 0.0f ? t * b.radius / r.radius : t;
 }
 
 // Between the outlines at two ends. Equal ones give their own bits.
-inline outline_point mix_outlines(outline_point a, outline_point b, float t) {
-    outline_point p = a;
-    if (a.x != b.x || a.y != b.y) {
-        p.x = a.x * (1.0f - t) + b.x * t;
-        p.y = a.y * (1.0f - t) + b.y * t;
-    }
-    if (a.facing_x != b.facing_x || a.facing_y != b.facing_y) {
-        float fx = a.facing_x * (1.0f - t) + b.facing_x * t;
-        float fy = a.facing_y * (1.0f - t) + b.facing_y * t;
-        float l = 1.0f / sqrt(fx * fx + fy * fy);
-        p.facing_x = fx * l;
-        p.facing_y = fy * l;
-    }
-    return p;
+inline vec2 mix_outlines(vec2 a, vec2 b, float weight) {
+    return a.x == b.x && a.y == b.y ? a : a * (1.0f - weight) + b * weight;
 }
 
-// branch_vertex, at a point of an outline.
-inline surface_vertex outline_vertex(branch_ring r, outline_point p, float u) {
-    surface_vertex vertex = branch_vertex(r, vec4(p.facing_x, p.facing_y, u, 0.0f));
+// branch_vertex, at a point of an outline. It looks where its corner of the full polygon does.
+inline surface_vertex outline_vertex(branch_ring r, vec2 p, vec4 corner) {
+    surface_vertex vertex = branch_vertex(r, corner);
     vec3 outward = r.x * p.x - r.z * p.y;
     vertex.position = r.centre + outward * r.radius;
     return vertex;
 }
 
 // branch_cap_vertex, at a point of an outline.
-inline surface_vertex outline_cap_vertex(branch_ring r, outline_point p, bool base) {
+inline surface_vertex outline_cap_vertex(branch_ring r, vec2 p, bool base) {
     return branch_cap_vertex(r, vec4(p.x, p.y, 0.0f, 0.0f), base);
 }
 

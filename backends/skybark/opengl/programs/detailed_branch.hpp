@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 3a2fe9e8b4b5e0860051c9276c1c88a6ed4e10a8a860204791b755cbb9422870
+// sha256 45a6cda252d78a5bcb5c33836813b79ec210dc0dc064cce1dc03a77ed7647f2b
 #pragma once
 
 #include <skybark/kernels/detailed_branch.hpp>
@@ -432,7 +432,8 @@ branch_end end_between(branch_end a, branch_end b, branch_end own) {
 float way_between(branch_end a, branch_end b, branch_end own) {
     branch_end e = end_between(a, b, own);
     vec3 way = e.position - own.position;
-    return sqrt(dot3(way, way)) + abs(e.radius - own.radius);
+    return sqrt(dot3(way, way)) + abs(e.radius - own.radius) +
+           own.radius * abs(e.slope - own.slope);
 }
 branch_end end_on_its_way(branch_end a, branch_end b, branch_end own, float fraction) {
     branch_end e = end_between(a, b, own);
@@ -509,56 +510,31 @@ uint outline_after(ring_outline o, uint j) { return (j + o.step - 1u) / o.step *
 float outline_distance(ring_outline o, uint j) {
     return o.between == 1u && (j / o.step) % 2u == 1u ? o.inner : 1.0f;
 }
-struct outline_point {
-    float x;
-    float y;
-    float facing_x;
-    float facing_y;
-};
-outline_point point_of_outline(ring_outline o, uint j, vec4 before, vec4 after) {
-    outline_point p;
+vec2 point_of_outline(ring_outline o, uint j, vec4 before, vec4 after) {
     uint first = outline_before(o, j);
     uint last = outline_after(o, j);
     float d = outline_distance(o, first);
-    p.x = before.x * d;
-    p.y = before.y * d;
-    p.facing_x = before.x;
-    p.facing_y = before.y;
+    vec2 p = vec2(before.x * d, before.y * d);
     if (last != first) {
         float w = float(j - first) / float(o.step);
         float e = outline_distance(o, last);
-        p.x = p.x * (1.0f - w) + after.x * (e * w);
-        p.y = p.y * (1.0f - w) + after.y * (e * w);
-        float fx = before.x * (1.0f - w) + after.x * w;
-        float fy = before.y * (1.0f - w) + after.y * w;
-        float l = 1.0f / sqrt(fx * fx + fy * fy);
-        p.facing_x = fx * l;
-        p.facing_y = fy * l;
+        p = p * (1.0f - w) + vec2(after.x * e, after.y * e) * w;
     }
     return p;
 }
-outline_point mix_outlines(outline_point a, outline_point b, float t) {
-    outline_point p = a;
-    if (a.x != b.x || a.y != b.y) {
-        p.x = a.x * (1.0f - t) + b.x * t;
-        p.y = a.y * (1.0f - t) + b.y * t;
-    }
-    if (a.facing_x != b.facing_x || a.facing_y != b.facing_y) {
-        float fx = a.facing_x * (1.0f - t) + b.facing_x * t;
-        float fy = a.facing_y * (1.0f - t) + b.facing_y * t;
-        float l = 1.0f / sqrt(fx * fx + fy * fy);
-        p.facing_x = fx * l;
-        p.facing_y = fy * l;
-    }
-    return p;
+float outline_weight(branch_ring r, branch_end b, float t) {
+    return r.radius > 0.0f ? t * b.radius / r.radius : t;
 }
-surface_vertex outline_vertex(branch_ring r, outline_point p, float u) {
-    surface_vertex vertex = branch_vertex(r, vec4(p.facing_x, p.facing_y, u, 0.0f));
+vec2 mix_outlines(vec2 a, vec2 b, float weight) {
+    return a.x == b.x && a.y == b.y ? a : a * (1.0f - weight) + b * weight;
+}
+surface_vertex outline_vertex(branch_ring r, vec2 p, vec4 corner) {
+    surface_vertex vertex = branch_vertex(r, corner);
     vec3 outward = r.x * p.x - r.z * p.y;
     vertex.position = r.centre + outward * r.radius;
     return vertex;
 }
-surface_vertex outline_cap_vertex(branch_ring r, outline_point p, bool base) {
+surface_vertex outline_cap_vertex(branch_ring r, vec2 p, bool base) {
     return branch_cap_vertex(r, vec4(p.x, p.y, 0.0f, 0.0f), base);
 }
 surface_vertex between_vertices(surface_vertex own, surface_vertex before, surface_vertex after,
@@ -585,7 +561,7 @@ branch_ring ring_at(branch_end a, branch_end b, branch_curve c, uint k) {
     return frame == 0u ? branch_ring_slerp(a, b, c, float(k) / float(rings - 1u))
                        : branch_ring_rotation_minimising(a, b, c, k, rings - 1u);
 }
-outline_point point_at(ring_outline o, uint j) {
+vec2 point_at(ring_outline o, uint j) {
     return point_of_outline(o, j, corners[outline_before(o, j)], corners[outline_after(o, j)]);
 }
 uint kernel_strips() { return rings + 1u; }
@@ -604,9 +580,9 @@ struct moving_ring {
     branch_ring own;
     branch_ring before;
     branch_ring after;
-    float t;
-    float before_t;
-    float after_t;
+    float weight; // of the outline at the segment's end
+    float before_weight;
+    float after_weight;
     float w;
     float fraction;
 };
@@ -615,25 +591,25 @@ moving_ring moving_ring_at(branch_end a, branch_end b, branch_curve c, uint k, u
     moving_ring m;
     uint step = (rings - 1u) / gaps;
     m.own = ring_at(a, b, c, k * step);
-    m.t = float(k * step) / float(rings - 1u);
+    m.weight = outline_weight(m.own, b, float(k * step) / float(rings - 1u));
     m.fraction = 1.0;
     uint kept = least_factor(gaps);
     if (fraction < 1.0 && k % kept != 0u) {
         uint first = k / kept * kept;
         m.before = ring_at(a, b, c, first * step);
         m.after = ring_at(a, b, c, (first + kept) * step);
-        m.before_t = float(first * step) / float(rings - 1u);
-        m.after_t = float((first + kept) * step) / float(rings - 1u);
+        m.before_weight = outline_weight(m.before, b, float(first * step) / float(rings - 1u));
+        m.after_weight = outline_weight(m.after, b, float((first + kept) * step) / float(rings - 1u));
         m.w = float(k - first) / float(kept);
         m.fraction = fraction;
     }
     return m;
 }
-surface_vertex vertex_of(moving_ring m, outline_point p, outline_point q, float u) {
-    surface_vertex v = outline_vertex(m.own, mix_outlines(p, q, m.t), u);
+surface_vertex vertex_of(moving_ring m, vec2 p, vec2 q, vec4 corner) {
+    surface_vertex v = outline_vertex(m.own, mix_outlines(p, q, m.weight), corner);
     if (m.fraction < 1.0) {
-        v = between_vertices(v, outline_vertex(m.before, mix_outlines(p, q, m.before_t), u),
-                             outline_vertex(m.after, mix_outlines(p, q, m.after_t), u), m.w,
+        v = between_vertices(v, outline_vertex(m.before, mix_outlines(p, q, m.before_weight), corner),
+                             outline_vertex(m.after, mix_outlines(p, q, m.after_weight), corner), m.w,
                              m.fraction);
     }
     return v;
@@ -670,14 +646,14 @@ void kernel_strip(uint i, uint strip, uint first, uint count) {
     moving_ring upper = moving_ring_at(a, b, c, strip, d.y, fraction);
     for (uint j = first; j < last; ++j) {
         uint corner = j / 2u * step;
-        outline_point p = point_at(outline_a, corner);
-        outline_point q = point_at(outline_b, corner);
+        vec2 p = point_at(outline_a, corner);
+        vec2 q = point_at(outline_b, corner);
         bool above = (j & 1u) == 0u;
         moving_ring m = lower;
         if (above) {
             m = upper;
         }
-        emit_surface(vertex_of(m, p, q, corners[corner].z));
+        emit_surface(vertex_of(m, p, q, corners[corner]));
     }
 }
 #ifndef SKYBARK_MAX_VERTICES

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b08c0caa997fa13503e08c7dd1ef4096eacc562394dd2796e1e744a25e403e8d
+// sha256 13388005cc56715c9e6b9ff623a36af45dd2948c740eb4a226bf6eec1ef7ad37
 #pragma once
 
 #include <skybark/kernels/branch_detail.hpp>

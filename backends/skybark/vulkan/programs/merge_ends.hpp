@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ad3726a4f4c3c3ddd870eda7ba2e1e17a43a8cda9022192afa144ad1ce513918
+// sha256 59589b2db9ea207742e6b00c6f1a0d0462fe67319bdf84d1673a49f5393fbb10
 #pragma once
 
 #include <skybark/kernels/merge_ends.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f61debf7824c51557137e2817f76a8509cd9a909b4f32992b9ea04dfd568e2cd
+// sha256 cee21b904685213ff513904c0349bdb3f5a65749d2e8ffe94d79601b205cb009
 #pragma once
 
 #include <skybark/kernels/segment_rings.hpp>
