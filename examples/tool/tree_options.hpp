@@ -33,7 +33,7 @@ struct tree_option_words {
     bool closed = false;
 };
 
-/// How a tree answers to the wind (METHODS: the paper's, at rest in each wind, with inertia).
+/// How a tree answers to the wind: as the paper has it, at rest in every wind, or with inertia.
 enum class sway_kind { paper, quasi_static, dynamic };
 enum class gust_kind { kaimal, power_law, none };
 
