@@ -7,3 +7,4 @@
 #include <skybark/trees/branch_mesh.hpp>
 #include <skybark/trees/build_skeleton.hpp>
 #include <skybark/trees/species.hpp>
+#include <skybark/trees/wind.hpp>

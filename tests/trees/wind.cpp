@@ -185,7 +185,7 @@ trees::kaimal_gusts gusts_of(std::uint64_t seed) {
     return model;
 }
 
-/// Standard third octaves (centres 10^(k/10) Hz) of six hours of wind at one place.
+/// Standard third octaves (centres 10^(k/10) Hz) of hours of wind at one place.
 spectrum_errors measure_spectrum(const trees::kaimal_gusts& model) {
     // Past the highest wave's Nyquist frequency, and long enough that the slowest two waves, at
     // 1.8e-3 Hz and 6 % apart, part: 2^17 steps.

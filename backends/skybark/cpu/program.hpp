@@ -1,6 +1,7 @@
 #pragma once
 // How the CPU backend runs a kernel: with the kernel's own functions, or faster where there is a
-// specialisation (hermite_branch.hpp, bark.hpp and wave_wind.hpp beside this). Both give the same bits.
+// specialisation (hermite_branch.hpp, bark.hpp and wave_wind.hpp beside this). Both give the same
+// bits.
 
 #include <skybark/cpu/sinks.hpp>
 
