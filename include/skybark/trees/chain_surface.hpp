@@ -476,55 +476,99 @@ class chain_surface {
         return holes_.back();
     }
 
+    /// The loop's vertex nearest in direction to `p`.
+    [[nodiscard]] static std::size_t facing(const glm::dvec2& p,
+                                            const std::vector<glm::dvec2>& inner) {
+        std::size_t best = 0;
+        double most = -2;
+        for (std::size_t k = 0; k < inner.size(); ++k) {
+            const double cosine = glm::dot(glm::normalize(inner[k]), glm::normalize(p));
+            if (cosine > most) {
+                most = cosine;
+                best = k;
+            }
+        }
+        return best;
+    }
+
     /// Triangles between the rim and the loop. Each step goes one vertex on along one of them.
     void add_belt(const disk& d, const std::vector<glm::dvec2>& inner, hole& h) {
         std::vector<glm::dvec2> outer;
         for (const edge& e : d.rim) {
             outer.push_back(seen(d, e));
         }
-        std::size_t start = 0; // the ray nearest to the rim's first vertex in direction
-        double best = -2;
-        for (std::size_t k = 0; k < inner.size(); ++k) {
-            const double cosine = glm::dot(glm::normalize(inner[k]), glm::normalize(outer[0]));
-            if (cosine > best) {
-                best = cosine;
-                start = k;
+        std::size_t start = facing(outer[0], inner);
+        std::vector<bool> steps;
+        if (outer.size() * inner.size() <= most_states) {
+            double cost = 0;
+            steps = best_steps(outer, inner, start, cost);
+            for (std::size_t k = 0; k < inner.size() && cost >= turned_over; ++k) {
+                double other = 0;
+                std::vector<bool> tried = best_steps(outer, inner, k, other);
+                if (other < cost) {
+                    cost = other;
+                    start = k;
+                    steps = std::move(tried);
+                }
             }
         }
-        std::vector<bool> steps = shortest_steps(outer, inner, start);
-        if (!is_simple(steps, outer.size(), inner.size())) {
+        if (steps.empty() || !is_simple(steps, outer.size(), inner.size())) {
+            start = facing(outer[0], inner);
             steps = even_steps(outer.size(), inner.size());
         }
         write_belt(d, h, steps, start);
     }
 
-    /// True for a step along the rim. Prefers triangles that are not turned over, then the shorter
-    /// new edge.
-    [[nodiscard]] static std::vector<bool> shortest_steps(const std::vector<glm::dvec2>& outer,
-                                                          const std::vector<glm::dvec2>& inner,
-                                                          std::size_t start) {
+    /// True for a step along the rim. The triangles of the lowest cost together, from the edge
+    /// between the rim's first vertex and the loop's vertex `start` round to that edge again.
+    [[nodiscard]] static std::vector<bool> best_steps(const std::vector<glm::dvec2>& outer,
+                                                      const std::vector<glm::dvec2>& inner,
+                                                      std::size_t start, double& cost) {
         const std::size_t m = outer.size();
         const std::size_t n = inner.size();
-        std::vector<bool> steps;
-        std::size_t i = 0;
-        std::size_t j = 0;
-        while (i < m || j < n) {
-            const glm::dvec2& o = outer[i % m];
-            const glm::dvec2& p = inner[(start + j) % n];
-            const glm::dvec2& o_next = outer[(i + 1) % m];
-            const glm::dvec2& p_next = inner[(start + j + 1) % n];
-            const bool out_good = cross(o_next - o, p - o) > 0;
-            const bool in_good = cross(p - p_next, o - p_next) > 0;
-            bool out = glm::length(o_next - p) < glm::length(p_next - o);
-            if (out_good != in_good) {
-                out = out_good;
+        // costs[i][j]: to have gone i steps along the rim and j along the loop.
+        std::vector<double> costs((m + 1) * (n + 1), 1e300);
+        std::vector<bool> from_rim(costs.size());
+        costs[0] = 0;
+        for (std::size_t i = 0; i <= m; ++i) {
+            for (std::size_t j = 0; j <= n; ++j) {
+                const std::size_t here = i * (n + 1) + j;
+                const glm::dvec2& o = outer[i % m];
+                const glm::dvec2& p = inner[(start + j) % n];
+                if (i < m) {
+                    const double next = costs[here] + triangle_cost(o, outer[(i + 1) % m], p);
+                    if (next < costs[here + n + 1]) {
+                        costs[here + n + 1] = next;
+                        from_rim[here + n + 1] = true;
+                    }
+                }
+                if (j < n) {
+                    const double next =
+                        costs[here] + triangle_cost(inner[(start + j + 1) % n], p, o);
+                    if (next < costs[here + 1]) {
+                        costs[here + 1] = next;
+                        from_rim[here + 1] = false;
+                    }
+                }
             }
-            // All the way around one of them before the other moves would run an edge twice.
-            out = j >= n || (out && i < m);
-            steps.push_back(out);
-            ++(out ? i : j);
         }
+        cost = costs.back();
+        std::vector<bool> steps;
+        for (std::size_t here = costs.size() - 1; here != 0;) {
+            steps.push_back(from_rim[here]);
+            here -= from_rim[here] ? n + 1 : 1;
+        }
+        std::reverse(steps.begin(), steps.end());
         return steps;
+    }
+
+    /// How far a triangle is from an even one; far more where it is turned over.
+    [[nodiscard]] static double triangle_cost(const glm::dvec2& a, const glm::dvec2& b,
+                                              const glm::dvec2& c) {
+        const double area = cross(b - a, c - a);
+        const double edges =
+            glm::dot(b - a, b - a) + glm::dot(c - b, c - b) + glm::dot(a - c, a - c);
+        return area > 1e-6 * edges ? std::sqrt(edges / area) : turned_over;
     }
 
     [[nodiscard]] static std::vector<bool> even_steps(std::size_t m, std::size_t n) {
@@ -589,6 +633,8 @@ class chain_surface {
         }
     }
 
+    static constexpr double turned_over = 1e6;          ///< the cost of such a triangle
+    static constexpr std::size_t most_states = 1 << 14; ///< of the search for the best belt
     static constexpr double margin = 0.8; ///< how much of the way to the rim a loop may go
 
     std::uint32_t sides_;

@@ -6,14 +6,16 @@
 //  - Radii and lengths are at least a few dozen roundings of a float at that place, so that the
 //    corners of all rings are places of their own.
 //  - A branch begins outside its parent, where the tube between its first ring and the parent's
-//    surface is short, in place of inside it.
+//    surface is short, in place of inside it. That first ring moves with the parent's segment.
 //  - Chains stay whole. Segments that layout_branches takes out of a chain because they fold keep
 //    their ring: on a closed surface a fold is a wrinkle.
 //  - Ends at the very same place (a scan that has a branch twice) are set a little apart.
 
+#include <skybark/kernels/unit_polygon.hpp>
 #include <skybark/trees/branch_layout.hpp>
 
 #include <cstring>
+#include <optional>
 #include <unordered_map>
 
 namespace skybark::trees {
@@ -56,7 +58,7 @@ namespace detail {
 class closed_layout_builder {
   public:
     closed_layout_builder(const skeleton& from, const closed_mesh_options& options)
-        : from_(from), options_(options) {
+        : from_(from), options_(options), corners_(kernels::unit_polygon(options.sides)) {
         branch_layout layout = layout_branches(from, options.frame);
         layout_.ends = std::move(layout.ends);
         layout_.segments = std::move(layout.segments);
@@ -69,11 +71,16 @@ class closed_layout_builder {
         thicken();
         gather_chains();
         along_.resize(from_.size());
+        std::size_t collar = 0;
         for (std::uint32_t c = 0; c < layout_.chains.size(); ++c) {
-            if (parent_[c] != none) {
-                set_outside(c);
-            }
             add_up_lengths(layout_.chains[c]);
+            if (collar < layout_.collars.size() && layout_.collars[collar].parent == c) {
+                mesh(layout_.chains[c]);
+            }
+            for (; collar < layout_.collars.size() && layout_.collars[collar].parent == c;
+                 ++collar) {
+                set_outside(layout_.collars[collar], collar);
+            }
         }
         part_duplicates();
         return std::move(layout_);
@@ -194,11 +201,9 @@ class closed_layout_builder {
         }
         layout_.collars.resize(sum);
         layout_.loops.resize(std::size_t{sum} * options_.sides);
-        collar_.assign(chains, none);
         for (std::uint32_t c = 0; c < chains; ++c) {
             if (parent_[c] != none) {
-                collar_[c] = place[parent_[c]]++;
-                layout_.collars[collar_[c]] = {parent_[c], c, {}};
+                layout_.collars[place[parent_[c]]++] = {parent_[c], c, {}};
             }
         }
     }
@@ -213,98 +218,214 @@ class closed_layout_builder {
         }
     }
 
+    /// The rings of a chain as its tube will have them, `sides` points each.
+    void mesh(const branch_chain& chain) {
+        const kernels::hermite_branch tube{options_.sides, options_.rings, options_.frame};
+        tube_.clear();
+        for (std::uint32_t k = 0; k < chain.count; ++k) {
+            std::uint32_t vertex = k == 0 ? 0 : options_.sides + 1;
+            const auto take = [&](const surface_vertex& v) {
+                if (vertex++ % (options_.sides + 1) != options_.sides) {
+                    tube_.push_back(v.position);
+                }
+            };
+            tube.ring(layout_.order[chain.first + k], vertex, tube.ring_vertices() - vertex, take,
+                      layout_.segments, layout_.ends, corners_);
+        }
+    }
+
     /// Where a branch comes out of its parent.
     struct outlet {
         std::uint32_t segment = 0; ///< of the parent, counted along its chain
-        float along = 0;           ///< m from that segment's start
-        float radius = 0;          ///< m, of the parent there
         float depth = 0;           ///< m along the branch from its start
+        float radius = 0;          ///< m, of the parent there
+        float turn = 0;            ///< around the parent
+        float along = 0;           ///< m along the parent's chain
         glm::vec3 axis{0};         ///< unit, of the parent
         glm::vec3 normal{0};       ///< unit, of the parent's surface
     };
 
-    /// Follows a ray that starts inside the parent's segment `k` until it is outside of the cone
-    /// that this segment is, or one of its neighbours in the chain.
-    [[nodiscard]] outlet find_outlet(const branch_chain& parent, std::uint32_t k,
-                                     const glm::vec3& start, const glm::vec3& direction) {
-        constexpr int most_segments = 32;
+    /// Follows a ray from inside the parent's segment `k` out of its tube, if it is inside.
+    [[nodiscard]] std::optional<outlet> find_outlet(const branch_chain& parent, std::uint32_t k,
+                                                    const glm::vec3& start,
+                                                    const glm::vec3& direction) {
         outlet out;
-        int heading = 0;
-        for (int n = 0; n < most_segments; ++n) {
-            out = outlet_of_segment(parent, k, start, direction);
-            const float length = chord_length(layout_.order[parent.first + k]);
-            int next = 0;
-            if (out.along > length && k + 1 < parent.count) {
-                next = 1;
-            } else if (out.along < 0 && k > 0) {
-                next = -1;
+        out.depth = std::numeric_limits<float>::max();
+        const glm::vec3 chord = end_of(layout_.order[parent.first + k]).position -
+                                start_of(layout_.order[parent.first + k]).position;
+        const bool forth = glm::dot(chord, direction) >= 0;
+        constexpr std::uint32_t farthest = 8; // segments
+        bool found = meet_tube(parent, k, start, direction, out);
+        for (std::uint32_t n = 1; n <= farthest && (n == 1 || !found); ++n) {
+            for (const bool on : {forth, !forth}) {
+                const bool there = on ? k + n < parent.count : k >= n;
+                if (there && meet_tube(parent, on ? k + n : k - n, start, direction, out)) {
+                    found = true;
+                }
             }
-            if (next == 0 || next == -heading) {
-                break;
-            }
-            heading = next;
-            k = next > 0 ? k + 1 : k - 1;
         }
-        return out;
+        return found ? std::optional(out) : std::nullopt;
+    }
+
+    /// The first triangle of the parent's segment `k` that the ray leaves through, if that is
+    /// before `out` yet.
+    bool meet_tube(const branch_chain& parent, std::uint32_t k, const glm::vec3& start,
+                   const glm::vec3& direction, outlet& out) {
+        const std::uint32_t gaps = options_.rings - 1;
+        const std::uint32_t sides = options_.sides;
+        bool found = false;
+        for (std::uint32_t ring = k * gaps; ring < (k + 1) * gaps; ++ring) {
+            const glm::vec3* low = tube_.data() + std::size_t{ring} * sides;
+            const glm::vec3* high = low + sides;
+            for (std::uint32_t c = 0; c < sides; ++c) {
+                const std::uint32_t next = c + 1 < sides ? c + 1 : 0;
+                glm::vec2 at;
+                // Upper left and lower right, as hermite_branch has them; `at` from the corner low.
+                if (meets(start, direction, low[c], high[next], high[c], out, at)) {
+                    set_outlet(
+                        parent, k,
+                        {static_cast<float>(c) + at.x, static_cast<float>(ring) + at.x + at.y},
+                        out);
+                    found = true;
+                }
+                if (meets(start, direction, low[c], low[next], high[next], out, at)) {
+                    set_outlet(
+                        parent, k,
+                        {static_cast<float>(c) + at.x + at.y, static_cast<float>(ring) + at.y},
+                        out);
+                    found = true;
+                }
+            }
+        }
+        return found;
+    }
+
+    /// Whether the ray leaves through triangle (a, b, c) before `out`, whose depth and normal it
+    /// then sets; `at` is how far it is from a towards b and towards c (Moeller and Trumbore).
+    [[nodiscard]] static bool meets(const glm::vec3& start, const glm::vec3& direction,
+                                    const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
+                                    outlet& out, glm::vec2& at) {
+        const glm::vec3 ab = b - a;
+        const glm::vec3 ac = c - a;
+        const glm::vec3 normal = glm::cross(ab, ac);
+        const float facing = glm::dot(normal, direction);
+        if (!(facing > 0)) {
+            return false;
+        }
+        const glm::vec3 q = glm::cross(start - a, direction);
+        at.x = -glm::dot(ac, q) / facing;
+        at.y = glm::dot(ab, q) / facing;
+        const float depth = glm::dot(a - start, normal) / facing;
+        constexpr float slack = -1e-4f; // rays through an edge
+        if (!(at.x >= slack && at.y >= slack && at.x + at.y <= 1 - slack && depth > 0 &&
+              depth < out.depth)) {
+            return false;
+        }
+        out.depth = depth;
+        out.normal = glm::normalize(normal);
+        return true;
+    }
+
+    /// What follows from where an outlet is on the unrolled tube: corners around, rings along.
+    void set_outlet(const branch_chain& parent, std::uint32_t k, const glm::vec2& place,
+                    outlet& out) {
+        const std::uint32_t s = layout_.order[parent.first + k];
+        const auto gaps = static_cast<float>(options_.rings - 1);
+        const float t = std::clamp(place.y / gaps - static_cast<float>(k), 0.0f, 1.0f);
+        out.segment = k;
+        out.turn = place.x / static_cast<float>(options_.sides);
+        out.along = along_[s] + t * chord_length(s);
+        out.radius = glm::mix(start_of(s).radius, end_of(s).radius, t);
+        out.axis = (end_of(s).position - start_of(s).position) / chord_length(s);
     }
 
     [[nodiscard]] float chord_length(std::uint32_t s) {
         return glm::distance(start_of(s).position, end_of(s).position);
     }
 
-    [[nodiscard]] outlet outlet_of_segment(const branch_chain& parent, std::uint32_t k,
-                                           const glm::vec3& start, const glm::vec3& direction) {
+    /// The place of the parent's segment `k` nearest to where the branch starts.
+    [[nodiscard]] outlet outlet_beside(const branch_chain& parent, std::uint32_t k,
+                                       const glm::vec3& start, const glm::vec3& direction) {
         const std::uint32_t s = layout_.order[parent.first + k];
         const branch_end& a = start_of(s);
-        const branch_end& b = end_of(s);
         const float length = chord_length(s);
         outlet out;
-        out.segment = k;
-        out.axis = (b.position - a.position) / length;
-        const float y0 = glm::dot(start - a.position, out.axis);
-        const glm::vec3 off = start - a.position - out.axis * y0;
-        const float forward = glm::dot(direction, out.axis);
-        const glm::vec3 side = direction - out.axis * forward;
-        const float side2 = glm::dot(side, side);
-        out.along = y0;
-        for (int n = 0; n < 3; ++n) { // the radius where it comes out
-            out.radius = glm::mix(a.radius, b.radius, std::clamp(out.along / length, 0.0f, 1.0f));
-            const float middle = -glm::dot(off, side);
-            const float square =
-                middle * middle + side2 * (out.radius * out.radius - glm::dot(off, off));
-            out.depth = side2 > 1e-6f
-                            ? std::max(0.0f, (middle + std::sqrt(std::max(0.0f, square))) / side2)
-                            : 0.0f;
-            out.along = y0 + out.depth * forward;
-        }
-        const glm::vec3 outwards = off + side * out.depth;
-        const glm::vec3 any = shared::quaternion_x(a.orientation);
-        const glm::vec3 across = any - out.axis * glm::dot(any, out.axis);
-        out.normal = glm::length(outwards) > 0.01f * out.radius ? glm::normalize(outwards)
-                     : side2 > 1e-6f                            ? side / std::sqrt(side2)
-                                                                : glm::normalize(across);
+        out.axis = (end_of(s).position - a.position) / length;
+        const float along = std::clamp(glm::dot(start - a.position, out.axis), 0.0f, length);
+        const glm::vec3 side = across(direction, out.axis);
+        const glm::vec3 off = across(start - a.position, out.axis);
+        const glm::vec3 any = across(shared::quaternion_x(a.orientation), out.axis);
+        out.normal = glm::length(side) > 1e-3f            ? glm::normalize(side)
+                     : glm::length(off) > 0.1f * a.radius ? glm::normalize(off)
+                                                          : glm::normalize(any);
+        const float ring =
+            (static_cast<float>(k) + along / length) * static_cast<float>(options_.rings - 1);
+        set_outlet(
+            parent, k,
+            {turn_of(s, along / length, out.normal) * static_cast<float>(options_.sides), ring},
+            out);
         return out;
     }
 
+    [[nodiscard]] static glm::vec3 across(const glm::vec3& v, const glm::vec3& axis) {
+        return v - axis * glm::dot(v, axis);
+    }
+
+    [[nodiscard]] glm::vec3 direction_of(std::uint32_t s) {
+        return (end_of(s).position - start_of(s).position) / chord_length(s);
+    }
+
+    /// The point of a segment's centreline beside `p`.
+    [[nodiscard]] glm::vec3 nearest_centre(std::uint32_t s, const glm::vec3& p) {
+        const branch_end& a = start_of(s);
+        const branch_end& b = end_of(s);
+        const float t = glm::dot(p - a.position, direction_of(s)) / chord_length(s);
+        const shared::branch_curve c = shared::branch_curve_between(a, b);
+        return shared::hermite_point(c.p1, c.n1, c.p2, c.n2, std::clamp(t, 0.0f, 1.0f));
+    }
+
+    /// Moves the start of segment `s`, unless that leaves nothing of it.
+    void move_start(std::uint32_t s, const glm::vec3& to) {
+        branch_end& start = start_of(s);
+        const glm::vec3 before = direction_of(s);
+        if (glm::distance(to, end_of(s).position) < 0.1f * chord_length(s)) {
+            return;
+        }
+        start.position = to;
+        const glm::vec4 q = start.orientation;
+        start.orientation =
+            as_vec4(shortest_rotation(before, direction_of(s)) * glm::quat(q.w, q.x, q.y, q.z));
+    }
+
     /// Moves the start of a chain out of its parent, and puts its collar where it comes out.
-    void set_outside(std::uint32_t chain) {
-        const std::uint32_t first = layout_.order[layout_.chains[chain].first];
+    void set_outside(branch_collar& collar, std::size_t number) {
+        const std::uint32_t first = layout_.order[layout_.chains[collar.child].first];
         branch_end& start = start_of(first);
-        const branch_chain& parent = layout_.chains[parent_[chain]];
-        const glm::vec3 chord = end_of(first).position - start.position;
-        const float length = glm::length(chord);
-        const glm::vec3 direction = chord / length;
-        const outlet out = find_outlet(parent, joined_[first], start.position, direction);
-        place_collar(chain, parent, start, direction, out);
+        const branch_chain& parent = layout_.chains[collar.parent];
+        const std::uint32_t k = joined_[first];
+        std::optional<outlet> met = find_outlet(parent, k, start.position, direction_of(first));
+        if (!met) { // the parent bends so much that the branch starts beside it
+            move_start(first, nearest_centre(layout_.order[parent.first + k], start.position));
+            met = find_outlet(parent, k, start.position, direction_of(first));
+        }
+        const glm::vec3 direction = direction_of(first);
+        const float length = chord_length(first);
+        const outlet out = met ? *met : outlet_beside(parent, k, start.position, direction);
+        const std::span<glm::vec2> loop =
+            std::span(layout_.loops).subspan(number * options_.sides, options_.sides);
+        collar.centre = place_loop(parent, start, direction, out, loop);
         // As far that no point of the first ring is inside, if the branch is long enough for it.
         const float steep = glm::dot(direction, out.normal);
         const float flat = std::sqrt(std::max(0.0f, 1 - steep * steep));
         const float clear =
-            out.depth + start.radius * (flat + 0.15f) / std::max(steep, least_steepness);
-        const float most = std::max(0.0f, std::min(0.6f * length, length - 2 * least_length()));
+            out.depth + start.radius * (flat + 2 * (flare - 1)) / std::max(steep, 0.2f);
+        const float most = std::max(0.0f, std::min(0.8f * length, length - 2 * least_length()));
         const float by = std::min(clear, most);
         start.position += direction * by;
         start.path += by;
+        // The foot goes with the wood that it stands on; the branch bends above it.
+        const std::uint32_t under = layout_.order[parent.first + out.segment];
+        layout_.carriers[layout_.segments[first].start] = {under, under, under, 0};
     }
 
     [[nodiscard]] float least_length() const {
@@ -312,42 +433,35 @@ class closed_layout_builder {
     }
 
     /// The child's ring, a little wider, projected along it onto the plane that touches the parent,
-    /// and wrapped around the parent.
-    void place_collar(std::uint32_t chain, const branch_chain& parent, const branch_end& start,
-                      const glm::vec3& direction, const outlet& out) {
-        constexpr float flare = 1.2f;
+    /// and wrapped around the parent. Gives the centre.
+    [[nodiscard]] glm::vec2 place_loop(const branch_chain& parent, const branch_end& start,
+                                       const glm::vec3& direction, const outlet& out,
+                                       std::span<glm::vec2> loop) {
         const glm::vec3 along = steep_enough(direction, out.normal, out.axis);
-        const glm::vec3 east = glm::cross(out.axis, out.normal);
+        const glm::vec3 east = glm::normalize(glm::cross(out.axis, out.normal));
+        const glm::vec3 north = glm::cross(out.normal, east);
         const glm::vec3 x = shared::quaternion_x(start.orientation);
         const glm::vec3 z = shared::quaternion_z(start.orientation);
-        const std::span<glm::vec2> loop =
-            std::span(layout_.loops)
-                .subspan(std::size_t{collar_[chain]} * options_.sides, options_.sides);
         glm::vec2 most(0);
-        for (std::uint32_t c = 0; c < loop.size(); ++c) {
-            const float angle = static_cast<float>(c) / static_cast<float>(loop.size()) * two_pi;
-            const glm::vec3 ring = (x * std::cos(angle) - z * std::sin(angle)) * start.radius;
+        for (std::size_t c = 0; c < loop.size(); ++c) {
+            const glm::vec3 ring = (x * corners_[c].x - z * corners_[c].y) * start.radius;
             const float down = glm::dot(ring, out.normal) / glm::dot(along, out.normal);
             const glm::vec3 foot = (ring - along * down) * flare;
-            loop[c] = {glm::dot(foot, east), glm::dot(foot, out.axis)};
+            loop[c] = {glm::dot(foot, east), glm::dot(foot, north)};
             most = glm::max(most, glm::abs(loop[c]));
         }
         const std::uint32_t last = layout_.order[parent.first + parent.count - 1];
         const float total = along_[last] + chord_length(last);
-        const float widest = 0.9f * out.radius;
-        const glm::vec2 shrink(std::min(1.0f, widest / most.x),
+        const glm::vec2 shrink(std::min(1.0f, 0.9f * out.radius / most.x),
                                std::min(1.0f, 0.45f * total / most.y));
-        const std::uint32_t s = layout_.order[parent.first + out.segment];
-        const float t = std::clamp(out.along / chord_length(s), 0.0f, 1.0f);
         const float room = most.y * shrink.y * 1.1f;
-        glm::vec2& centre = layout_.collars[collar_[chain]].centre;
-        centre = {turn_of(s, t, out.normal),
-                  std::clamp(along_[s] + out.along, room, std::max(room, total - room))};
+        const glm::vec2 centre(out.turn, std::clamp(out.along, room, std::max(room, total - room)));
         for (glm::vec2& p : loop) {
             p *= shrink;
             p.x = std::asin(p.x / out.radius) / two_pi;
             p += centre;
         }
+        return centre;
     }
 
     /// `direction`, lifted off the surface where it runs along it or into it.
@@ -413,15 +527,17 @@ class closed_layout_builder {
     }
 
     static constexpr float two_pi = 6.28318530718f;
-    static constexpr float least_steepness = 0.4f;
+    static constexpr float least_steepness = 0.35f;
+    static constexpr float flare = 1.2f; ///< how much wider than the branch its foot is
 
     const skeleton& from_;
     const closed_mesh_options& options_;
+    std::vector<glm::vec4> corners_;
     closed_layout layout_;
     std::vector<std::uint32_t> parent_; ///< of each chain
-    std::vector<std::uint32_t> collar_; ///< of each chain
     std::vector<std::uint32_t> joined_; ///< of a chain's first segment: place in the parent's chain
     std::vector<float> along_;          ///< m, see add_up_lengths
+    std::vector<glm::vec3> tube_;       ///< points of the chain under way, see mesh
     float step_ = 0;                    ///< m
 };
 
