@@ -10,6 +10,9 @@
 // widened in their place (Cook, Halstead, Planck and Ryu 2007); segments in a row become one where
 // that is close enough. All of it is continuous in the camera's place: nothing appears or goes away
 // but where it has no size, or is where it would be without.
+//
+// A scene that does not fit the device's largest buffer is cut into chunks of whole segments. Where
+// a chunk ends, so does the merging of segments; the surface is whole across.
 
 #include <skybark/core/backend.hpp>
 #include <skybark/kernels/detailed_branch.hpp>
