@@ -10,9 +10,9 @@
 #include <skybark/opengl/device.hpp>
 #include <skybark/opengl/programs/bark.hpp>
 #include <skybark/opengl/programs/branch_cap.hpp>
+#include <skybark/opengl/programs/branch_detail.hpp>
 #include <skybark/opengl/programs/branch_join.hpp>
 #include <skybark/opengl/programs/branch_tip.hpp>
-#include <skybark/opengl/programs/branch_detail.hpp>
 #include <skybark/opengl/programs/cast_leaf_shadow.hpp>
 #include <skybark/opengl/programs/cast_shadow.hpp>
 #include <skybark/opengl/programs/clear_sky.hpp>
@@ -24,6 +24,8 @@
 #include <skybark/opengl/programs/lit_branch.hpp>
 #include <skybark/opengl/programs/lit_leaf.hpp>
 #include <skybark/opengl/programs/meadow_ground.hpp>
+#include <skybark/opengl/programs/merge_chains.hpp>
+#include <skybark/opengl/programs/merge_ends.hpp>
 #include <skybark/opengl/programs/pose_ends.hpp>
 #include <skybark/opengl/programs/probe_image.hpp>
 #include <skybark/opengl/programs/probe_level.hpp>

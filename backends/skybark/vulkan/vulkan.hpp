@@ -6,9 +6,9 @@
 
 #include <skybark/vulkan/programs/bark.hpp>
 #include <skybark/vulkan/programs/branch_cap.hpp>
+#include <skybark/vulkan/programs/branch_detail.hpp>
 #include <skybark/vulkan/programs/branch_join.hpp>
 #include <skybark/vulkan/programs/branch_tip.hpp>
-#include <skybark/vulkan/programs/branch_detail.hpp>
 #include <skybark/vulkan/programs/cast_leaf_shadow.hpp>
 #include <skybark/vulkan/programs/cast_shadow.hpp>
 #include <skybark/vulkan/programs/clear_sky.hpp>
@@ -20,6 +20,8 @@
 #include <skybark/vulkan/programs/lit_branch.hpp>
 #include <skybark/vulkan/programs/lit_leaf.hpp>
 #include <skybark/vulkan/programs/meadow_ground.hpp>
+#include <skybark/vulkan/programs/merge_chains.hpp>
+#include <skybark/vulkan/programs/merge_ends.hpp>
 #include <skybark/vulkan/programs/pose_ends.hpp>
 #include <skybark/vulkan/programs/probe_image.hpp>
 #include <skybark/vulkan/programs/probe_level.hpp>
