@@ -16,6 +16,7 @@
 // (comma-separated): then, and with any other error, they fail. One device serves all cases until
 // one fails: the next case gets a new one.
 
+#include <skybark/conformance/bark.hpp>
 #include <skybark/conformance/branches.hpp>
 #include <skybark/conformance/buffers.hpp>
 #include <skybark/conformance/chains.hpp>
@@ -94,6 +95,7 @@ template <backend B>
     add_draw_cases(all);
     add_chain_cases(all);
     add_branch_cases(all);
+    add_bark_cases(all);
     add_leaf_cases(all);
     return all;
 }
