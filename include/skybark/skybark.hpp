@@ -4,6 +4,7 @@
 
 #include <skybark/core/backend.hpp>
 #include <skybark/core/validated.hpp>
+#include <skybark/trees/bark_mesh.hpp>
 #include <skybark/trees/branch_mesh.hpp>
 #include <skybark/trees/build_skeleton.hpp>
 #include <skybark/trees/species.hpp>

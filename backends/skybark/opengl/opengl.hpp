@@ -21,6 +21,7 @@
 #include <skybark/opengl/programs/grid_wind.hpp>
 #include <skybark/opengl/programs/hermite_branch.hpp>
 #include <skybark/opengl/programs/leaf_blade.hpp>
+#include <skybark/opengl/programs/lit_bark.hpp>
 #include <skybark/opengl/programs/lit_branch.hpp>
 #include <skybark/opengl/programs/lit_leaf.hpp>
 #include <skybark/opengl/programs/meadow_ground.hpp>
@@ -35,5 +36,11 @@
 #include <skybark/opengl/programs/probe_surface.hpp>
 #include <skybark/opengl/programs/ring_indices.hpp>
 #include <skybark/opengl/programs/segment_rings.hpp>
+#include <skybark/opengl/programs/sway_bends.hpp>
+#include <skybark/opengl/programs/sway_energies.hpp>
+#include <skybark/opengl/programs/sway_forces.hpp>
+#include <skybark/opengl/programs/sway_inertia.hpp>
+#include <skybark/opengl/programs/sway_moments.hpp>
+#include <skybark/opengl/programs/sway_motion.hpp>
 #include <skybark/opengl/programs/wave_wind.hpp>
 #include <skybark/opengl/programs/wind_load.hpp>

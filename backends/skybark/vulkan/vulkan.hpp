@@ -17,6 +17,7 @@
 #include <skybark/vulkan/programs/grid_wind.hpp>
 #include <skybark/vulkan/programs/hermite_branch.hpp>
 #include <skybark/vulkan/programs/leaf_blade.hpp>
+#include <skybark/vulkan/programs/lit_bark.hpp>
 #include <skybark/vulkan/programs/lit_branch.hpp>
 #include <skybark/vulkan/programs/lit_leaf.hpp>
 #include <skybark/vulkan/programs/meadow_ground.hpp>
@@ -31,5 +32,11 @@
 #include <skybark/vulkan/programs/probe_surface.hpp>
 #include <skybark/vulkan/programs/ring_indices.hpp>
 #include <skybark/vulkan/programs/segment_rings.hpp>
+#include <skybark/vulkan/programs/sway_bends.hpp>
+#include <skybark/vulkan/programs/sway_energies.hpp>
+#include <skybark/vulkan/programs/sway_forces.hpp>
+#include <skybark/vulkan/programs/sway_inertia.hpp>
+#include <skybark/vulkan/programs/sway_moments.hpp>
+#include <skybark/vulkan/programs/sway_motion.hpp>
 #include <skybark/vulkan/programs/wave_wind.hpp>
 #include <skybark/vulkan/programs/wind_load.hpp>
