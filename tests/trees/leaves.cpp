@@ -225,13 +225,16 @@ TEST(leaves, at_rest_they_are_where_they_were_placed) {
 
 TEST(leaves, grow_on_last_segments_and_on_the_bark) {
     for (const support::test_tree& tree : all_trees()) {
-        const auto leaves = trees::place_leaves(tree.skeleton, {});
+        trees::leaf_options options;
+        options.per_twig = 3;
+        const auto leaves = trees::place_leaves(tree.skeleton, options);
         std::size_t ends = 0;
         for (const std::uint32_t children : tree.skeleton.child_count) {
             ends += children == 0 ? 1 : 0;
         }
-        EXPECT_NEAR(static_cast<double>(leaves.size()), 12.0 * static_cast<double>(ends), 1);
-        for (const leaf& l : leaves) {
+        EXPECT_NEAR(static_cast<double>(leaves.size()), 3.0 * static_cast<double>(ends), 1);
+        for (std::size_t i = 0; i < leaves.size(); i += 1 + leaves.size() / 20'000) {
+            const leaf& l = leaves[i];
             ASSERT_LT(l.carrier, tree.skeleton.size());
             ASSERT_EQ(tree.skeleton.child_count[l.carrier], 0u) << tree.name;
             const float thickest =
@@ -258,18 +261,26 @@ bool is_within(const trees::skeleton& tree, std::uint32_t i, double reach) {
 
 TEST(leaves, of_species_grow_along_their_twigs) {
     for (const trees::species_entry& species : trees::all_species()) {
-        const auto tree = support::built(*trees::grow(species.parameters, 1));
+        const auto of_species = [&](const support::test_tree& t) { return t.name == species.name; };
+        const auto& tree =
+            std::find_if(all_trees().begin(), all_trees().end(), of_species)->skeleton;
         trees::leaf_options options = trees::leaves_of(species);
         const auto leaves = trees::place_leaves(tree, options);
         EXPECT_GE(leaves.size(), 10'000u) << species.name;
         EXPECT_LE(leaves.size(), 1'000'000u) << species.name;
         std::size_t on_ends = 0;
-        for (const leaf& l : leaves) {
+        std::size_t checked = 0;
+        for (std::size_t i = 0; i < leaves.size(); i += 1 + leaves.size() / 20'000) {
+            const leaf& l = leaves[i];
             ASSERT_TRUE(is_within(tree, l.carrier, options.reach)) << species.name;
+            ++checked;
             on_ends += tree.child_count[l.carrier] == 0 ? 1 : 0;
         }
         if (species.parameters.level[species.parameters.levels - 1].curve_res > 1) {
-            EXPECT_LT(on_ends, leaves.size()) << species.name; // along the twig, not at its end
+            EXPECT_LT(on_ends, checked) << species.name; // along the twig, not at its end
+        }
+        if (leaves.size() > 200'000) {
+            continue;
         }
         // Twice as many of half the area.
         options.multiplier = 2;
