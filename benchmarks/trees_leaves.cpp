@@ -2,7 +2,7 @@
 //
 //   trees/leaves/BACKEND/LEAVES        ten vertices and six triangles a leaf, shared indices
 //   trees/leaves_list/BACKEND/LEAVES   three vertices a triangle; compact
-//   trees/leaves_far/BACKEND/LEAVES    the list from so far that one leaf in nine is left
+//   trees/leaves_far/BACKEND/LEAVES    the list from so far that about one leaf in eight is left
 //   trees/leaves/plain/LEAVES          the plain kernel on one thread, without vectors
 //   trees/leaves/floor/LEAVES          writing the same bytes as the rings, all threads
 //
