@@ -17,16 +17,21 @@ surface_vertex tube_vertex(uint i) {
     return s;
 }
 
-void kernel_map(uint i) {
-    join_point p = points[i];
-    surface_vertex a = tube_vertex(p.a);
-    surface_vertex s;
-    if (p.child == 0xffffffffu) {
-        s = join_turned(p, a);
-    } else {
-        s = join_vertex(p, a, tube_vertex(p.b), tube_vertex(p.c), tube_vertex(p.child / 2u));
-    }
+void set_vertex(uint i, surface_vertex s) {
     vertices[3u * i] = vec4(s.position, s.u);
     vertices[3u * i + 1u] = vec4(s.normal, s.v);
     vertices[3u * i + 2u] = s.tangent;
+}
+
+void kernel_map(uint i) {
+    join_point p = points[i];
+    surface_vertex a = tube_vertex(p.a);
+    if (p.child == 0xffffffffu) {
+        set_vertex(2u * i, join_turned(p, a));
+        return;
+    }
+    surface_vertex child = tube_vertex(p.child);
+    surface_vertex s = join_vertex(p, a, tube_vertex(p.b), tube_vertex(p.c), child);
+    set_vertex(2u * i, s);
+    set_vertex(2u * i + 1u, join_vertex_of_child(s, child));
 }

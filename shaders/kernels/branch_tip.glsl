@@ -8,9 +8,13 @@ layout(std430, binding = 2) readonly buffer corners_buffer { vec4 corners[]; };
 layout(std430, binding = 3) writeonly buffer vertices_buffer { vec4 vertices[]; };
 
 void kernel_map(uint i) {
-    uint tip = tips[i / sides];
-    surface_vertex s = tip_vertex(ends[tip / 2u], corners[i % sides], sides, (tip & 1u) != 0u);
-    vertices[3u * i] = vec4(s.position, s.u);
-    vertices[3u * i + 1u] = vec4(s.normal, s.v);
-    vertices[3u * i + 2u] = s.tangent;
+    bool base = (tips[i] & 1u) != 0u;
+    branch_ring ring = branch_ring_at_end(ends[tips[i] / 2u]);
+    for (uint c = 0u; c < sides; ++c) {
+        surface_vertex s = tip_vertex(ring, corners[c], corners[c + 1u], base);
+        uint at = 3u * (i * sides + c);
+        vertices[at] = vec4(s.position, s.u);
+        vertices[at + 1u] = vec4(s.normal, s.v);
+        vertices[at + 2u] = s.tangent;
+    }
 }

@@ -7,7 +7,7 @@ struct join_point {
     uint a;
     uint b;
     uint c;
-    uint child; // 2 * (vertex of the child's first ring), + 1 for the child's texture coordinates
+    uint child; // the vertex of the child's first ring above it
     float at_a;
     float at_b;
     float at_c;
@@ -20,9 +20,9 @@ surface_vertex join_turned(join_point p, surface_vertex a) {
     return a;
 }
 
-// A vertex of the loop along which the surfaces of a branch and its child meet. Position and normal
-// depend on neither of the two texture coordinates that it is made with; the normal is half way
-// between the two surfaces'. There is no one direction of growing u, so tangent.w is 0.
+// A vertex of the loop along which the surfaces of a branch and its child meet, with the branch's
+// texture coordinates. The normal is half way between the two surfaces'. There is no one direction
+// of growing u, so tangent.w is 0.
 surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, surface_vertex c,
                            surface_vertex child) {
     surface_vertex vertex;
@@ -35,24 +35,27 @@ surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, sur
     vec3 first = vec3(a.tangent.x, a.tangent.y, a.tangent.z);
     vec3 tangent = unit_or(vec3(along.x, along.y, along.z), first);
     vertex.tangent = vec4(tangent.x, tangent.y, tangent.z, 0.0f);
-    if ((p.child & 1u) != 0u) {
-        vec3 up = child.position - vertex.position;
-        vertex.u = child.u;
-        vertex.v = child.v - sqrt(dot3(up, up));
-        vertex.tangent = vec4(child.tangent.x, child.tangent.y, child.tangent.z, 0.0f);
-    }
     return vertex;
 }
 
-// The point of the dome that closes a branch, as one of the `sides` triangles about it sees it:
-// half a radius above the ring at the tip, in the ring's plane at the base.
-surface_vertex tip_vertex(branch_end e, vec4 corner, uint sides, bool base) {
-    branch_ring ring = branch_ring_at_end(e);
-    surface_vertex vertex = branch_vertex(ring, corner);
+// The same vertex with the child's texture coordinates.
+surface_vertex join_vertex_of_child(surface_vertex vertex, surface_vertex child) {
+    vec3 up = child.position - vertex.position;
+    vertex.u = child.u;
+    vertex.v = child.v - sqrt(dot3(up, up));
+    vertex.tangent = vec4(child.tangent.x, child.tangent.y, child.tangent.z, 0.0f);
+    return vertex;
+}
+
+// The point of the dome that closes a branch, half a radius above the ring at the tip, in the
+// ring's plane at the base: as the triangle between two corners of the ring sees it.
+surface_vertex tip_vertex(branch_ring ring, vec4 corner, vec4 next, bool base) {
+    surface_vertex vertex;
+    vec3 along = ring.x * corner.y + ring.z * corner.x;
     vertex.position = ring.centre + ring.y * (base ? 0.0f : 0.5f * ring.radius);
     vertex.normal = base ? ring.y * -1.0f : ring.y;
-    vertex.u = corner.z + 0.5f / float(sides);
+    vertex.u = 0.5f * (corner.z + next.z);
     vertex.v = base ? ring.path - ring.radius : ring.path + ring.radius;
-    vertex.tangent = vec4(vertex.tangent.x, vertex.tangent.y, vertex.tangent.z, 0.0f);
+    vertex.tangent = vec4(-along.x, -along.y, -along.z, 0.0f);
     return vertex;
 }

@@ -16,7 +16,8 @@ static_assert(offsetof(join_point, child) == 12 && offsetof(join_point, at_a) ==
 /// The child of a join_point that is a vertex of the parent's tube once more, at u + turn.
 inline constexpr std::uint32_t no_child = 0xffffffffu;
 
-/// Buffers: points, the tubes' vertices, the points' vertices. Maps over points.
+/// Buffers: points, the tubes' vertices, two vertices a point: with the texture coordinates of the
+/// parent, and (left alone where there is no child) of the child. Maps over points.
 struct branch_join {
     using buffers =
         buffer_list<readonly<join_point>, readonly<surface_vertex>, writeonly<surface_vertex>>;
@@ -24,9 +25,15 @@ struct branch_join {
     void map(std::uint32_t i, std::span<const join_point> points,
              std::span<const surface_vertex> tubes, std::span<surface_vertex> vertices) const {
         const join_point& p = points[i];
-        vertices[i] = p.child == no_child ? shared::join_turned(p, tubes[p.a])
-                                          : shared::join_vertex(p, tubes[p.a], tubes[p.b],
-                                                                tubes[p.c], tubes[p.child / 2]);
+        if (p.child == no_child) {
+            vertices[2 * i] = shared::join_turned(p, tubes[p.a]);
+            return;
+        }
+        const surface_vertex& child = tubes[p.child];
+        const surface_vertex own =
+            shared::join_vertex(p, tubes[p.a], tubes[p.b], tubes[p.c], child);
+        vertices[2 * i] = own;
+        vertices[2 * i + 1] = shared::join_vertex_of_child(own, child);
     }
 };
 

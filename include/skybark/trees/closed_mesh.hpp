@@ -268,7 +268,7 @@ class closed_part_builder {
     std::uint32_t add_point(const kernels::join_point& p, std::uint64_t place) {
         part_.points.push_back(p);
         part_.point_places.push_back(static_cast<std::uint32_t>(place));
-        return point_bit | static_cast<std::uint32_t>(part_.points.size() - 1);
+        return point_bit | static_cast<std::uint32_t>(2 * (part_.points.size() - 1));
     }
 
     /// A loop's vertex: the place on the tube's triangle that it lies on, and the child's ring.
@@ -298,8 +298,7 @@ class closed_part_builder {
         }
         p.turn = static_cast<float>(turns);
         const std::uint32_t loop = vertex - surface_->grid_vertices();
-        p.child =
-            2 * (tube(child_segment(collars_[loop / options_.sides])) + loop % options_.sides);
+        p.child = tube(child_segment(collars_[loop / options_.sides])) + loop % options_.sides;
         return p;
     }
     /// Ring `ring` + `more` as a vertex of the segment that has both.
@@ -396,16 +395,22 @@ class closed_part_builder {
         return best;
     }
 
-    /// From the loop, once more with the child's texture coordinates, to the child's first ring.
+    /// From the loop, with the child's texture coordinates, to the child's first ring.
     void add_skirt(const placed_hole& placed) {
         const chain_surface::hole& hole = surface_->holes()[placed.number];
         const std::uint32_t ring = tube(child_segment(collars_[placed.number]));
         loop_vertices_.clear();
         for (std::uint32_t c = 0; c <= options_.sides; ++c) {
             const std::uint32_t vertex = hole.first_vertex + c % options_.sides;
-            kernels::join_point p = loop_point(vertex);
-            p.child = 2 * (ring + c) + 1;
-            loop_vertices_.push_back(add_point(p, loop_place(vertex)));
+            std::uint32_t point = 0;
+            if (c < options_.sides) {
+                point = surface_vertex_of(vertex, 0);
+            } else { // the child's seam
+                kernels::join_point p = loop_point(vertex);
+                p.child = ring + c;
+                point = add_point(p, loop_place(vertex));
+            }
+            loop_vertices_.push_back(point + 1);
         }
         for (std::uint32_t c = 0; c < options_.sides; ++c) {
             const std::uint32_t low = loop_vertices_[c];
@@ -447,7 +452,7 @@ class closed_part_builder {
             points += 3 * belt + options_.sides + 1;
             triangles += belt + std::uint64_t{2} * options_.sides;
         }
-        const std::uint64_t vertices = segments * tube_.ring_vertices() + points +
+        const std::uint64_t vertices = segments * tube_.ring_vertices() + 2 * points +
                                        (part_.tips.size() + 2) * options_.sides + 64;
         return vertices < most_vertices && vertices * sizeof(surface_vertex) <= most_bytes_ &&
                triangles * 12 <= most_bytes_;
@@ -458,7 +463,7 @@ class closed_part_builder {
         const auto points = static_cast<std::uint32_t>(
             aligned(std::uint64_t{tube_.ring_vertices()} * part_.segments.size()));
         const auto tips =
-            static_cast<std::uint32_t>(aligned(std::uint64_t{points} + part_.points.size()));
+            static_cast<std::uint32_t>(aligned(points + std::uint64_t{2} * part_.points.size()));
         for (std::uint32_t& index : part_.indices) {
             if ((index & tip_bit) != 0) {
                 index = (index & most_vertices) + tips;
@@ -532,7 +537,7 @@ class closed_mesh {
         buffer carriers; ///< end_carrier
         buffer points;   ///< join_point
         buffer tips;     ///< uint32, see branch_tip
-        buffer vertices; ///< surface_vertex: tubes, from first_point on points, then tips
+        buffer vertices; ///< surface_vertex: tubes, from first_point on two a point, then tips
         buffer indices;  ///< uint32, three a triangle, counter-clockwise from outside
         std::uint32_t segment_count = 0;
         std::uint32_t end_count = 0;
@@ -639,8 +644,10 @@ class closed_mesh {
                     *to++ = place + i / (sides + 1) * sides + i % (sides + 1) % sides;
                 }
             }
-            std::copy(p.point_places.begin(), p.point_places.end(),
-                      all.data() + first + p.first_point);
+            to = all.data() + first + p.first_point;
+            for (const std::uint32_t place : p.point_places) {
+                to = std::fill_n(to, 2, place);
+            }
             to = all.data() + first + p.first_tip;
             for (const std::uint32_t place : p.tip_places) {
                 to = std::fill_n(to, sides, place);
@@ -687,15 +694,16 @@ class closed_mesh {
             if (p.point_count != 0) {
                 to.map(kernels::branch_join{},
                        {view<B>(p.points), made,
-                        view<B, surface_vertex>(p.vertices, p.first_point, p.point_count)},
+                        view<B, surface_vertex>(p.vertices, p.first_point,
+                                                std::uint64_t{2} * p.point_count)},
                        range{0, p.point_count});
             }
             if (p.tip_count != 0) {
-                const std::uint32_t count = p.tip_count * options_.sides;
                 to.map(tip,
                        {view<B>(p.tips), view<B>(p.*ends), view<B>(*corners_),
-                        view<B, surface_vertex>(p.vertices, p.first_tip, count)},
-                       range{0, count});
+                        view<B, surface_vertex>(p.vertices, p.first_tip,
+                                                std::uint64_t{options_.sides} * p.tip_count)},
+                       range{0, p.tip_count});
             }
         }
     }

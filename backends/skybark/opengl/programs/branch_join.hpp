@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d106cef80908da2379f71f2f22e1c3f97fcdd518084b4d3cb54abae19a02d745
+// sha256 65628dcfae839de0087a74853d1b4868d28429e3154c730409b37a9121af9316
 #pragma once
 
 #include <skybark/kernels/branch_join.hpp>
@@ -301,7 +301,7 @@ struct join_point {
     uint a;
     uint b;
     uint c;
-    uint child; // 2 * (vertex of the child's first ring), + 1 for the child's texture coordinates
+    uint child; // the vertex of the child's first ring above it
     float at_a;
     float at_b;
     float at_c;
@@ -323,22 +323,23 @@ surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, sur
     vec3 first = vec3(a.tangent.x, a.tangent.y, a.tangent.z);
     vec3 tangent = unit_or(vec3(along.x, along.y, along.z), first);
     vertex.tangent = vec4(tangent.x, tangent.y, tangent.z, 0.0f);
-    if ((p.child & 1u) != 0u) {
-        vec3 up = child.position - vertex.position;
-        vertex.u = child.u;
-        vertex.v = child.v - sqrt(dot3(up, up));
-        vertex.tangent = vec4(child.tangent.x, child.tangent.y, child.tangent.z, 0.0f);
-    }
     return vertex;
 }
-surface_vertex tip_vertex(branch_end e, vec4 corner, uint sides, bool base) {
-    branch_ring ring = branch_ring_at_end(e);
-    surface_vertex vertex = branch_vertex(ring, corner);
+surface_vertex join_vertex_of_child(surface_vertex vertex, surface_vertex child) {
+    vec3 up = child.position - vertex.position;
+    vertex.u = child.u;
+    vertex.v = child.v - sqrt(dot3(up, up));
+    vertex.tangent = vec4(child.tangent.x, child.tangent.y, child.tangent.z, 0.0f);
+    return vertex;
+}
+surface_vertex tip_vertex(branch_ring ring, vec4 corner, vec4 next, bool base) {
+    surface_vertex vertex;
+    vec3 along = ring.x * corner.y + ring.z * corner.x;
     vertex.position = ring.centre + ring.y * (base ? 0.0f : 0.5f * ring.radius);
     vertex.normal = base ? ring.y * -1.0f : ring.y;
-    vertex.u = corner.z + 0.5f / float(sides);
+    vertex.u = 0.5f * (corner.z + next.z);
     vertex.v = base ? ring.path - ring.radius : ring.path + ring.radius;
-    vertex.tangent = vec4(vertex.tangent.x, vertex.tangent.y, vertex.tangent.z, 0.0f);
+    vertex.tangent = vec4(-along.x, -along.y, -along.z, 0.0f);
     return vertex;
 }
 layout(std430, binding = 0) readonly buffer points_buffer { join_point points[]; };
@@ -355,18 +356,22 @@ surface_vertex tube_vertex(uint i) {
     s.tangent = tubes[3u * i + 2u];
     return s;
 }
-void kernel_map(uint i) {
-    join_point p = points[i];
-    surface_vertex a = tube_vertex(p.a);
-    surface_vertex s;
-    if (p.child == 0xffffffffu) {
-        s = join_turned(p, a);
-    } else {
-        s = join_vertex(p, a, tube_vertex(p.b), tube_vertex(p.c), tube_vertex(p.child / 2u));
-    }
+void set_vertex(uint i, surface_vertex s) {
     vertices[3u * i] = vec4(s.position, s.u);
     vertices[3u * i + 1u] = vec4(s.normal, s.v);
     vertices[3u * i + 2u] = s.tangent;
+}
+void kernel_map(uint i) {
+    join_point p = points[i];
+    surface_vertex a = tube_vertex(p.a);
+    if (p.child == 0xffffffffu) {
+        set_vertex(2u * i, join_turned(p, a));
+        return;
+    }
+    surface_vertex child = tube_vertex(p.child);
+    surface_vertex s = join_vertex(p, a, tube_vertex(p.b), tube_vertex(p.c), child);
+    set_vertex(2u * i, s);
+    set_vertex(2u * i + 1u, join_vertex_of_child(s, child));
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
@@ -674,7 +679,7 @@ struct join_point {
     uint a;
     uint b;
     uint c;
-    uint child; // 2 * (vertex of the child's first ring), + 1 for the child's texture coordinates
+    uint child; // the vertex of the child's first ring above it
     float at_a;
     float at_b;
     float at_c;
@@ -696,22 +701,23 @@ surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, sur
     vec3 first = vec3(a.tangent.x, a.tangent.y, a.tangent.z);
     vec3 tangent = unit_or(vec3(along.x, along.y, along.z), first);
     vertex.tangent = vec4(tangent.x, tangent.y, tangent.z, 0.0f);
-    if ((p.child & 1u) != 0u) {
-        vec3 up = child.position - vertex.position;
-        vertex.u = child.u;
-        vertex.v = child.v - sqrt(dot3(up, up));
-        vertex.tangent = vec4(child.tangent.x, child.tangent.y, child.tangent.z, 0.0f);
-    }
     return vertex;
 }
-surface_vertex tip_vertex(branch_end e, vec4 corner, uint sides, bool base) {
-    branch_ring ring = branch_ring_at_end(e);
-    surface_vertex vertex = branch_vertex(ring, corner);
+surface_vertex join_vertex_of_child(surface_vertex vertex, surface_vertex child) {
+    vec3 up = child.position - vertex.position;
+    vertex.u = child.u;
+    vertex.v = child.v - sqrt(dot3(up, up));
+    vertex.tangent = vec4(child.tangent.x, child.tangent.y, child.tangent.z, 0.0f);
+    return vertex;
+}
+surface_vertex tip_vertex(branch_ring ring, vec4 corner, vec4 next, bool base) {
+    surface_vertex vertex;
+    vec3 along = ring.x * corner.y + ring.z * corner.x;
     vertex.position = ring.centre + ring.y * (base ? 0.0f : 0.5f * ring.radius);
     vertex.normal = base ? ring.y * -1.0f : ring.y;
-    vertex.u = corner.z + 0.5f / float(sides);
+    vertex.u = 0.5f * (corner.z + next.z);
     vertex.v = base ? ring.path - ring.radius : ring.path + ring.radius;
-    vertex.tangent = vec4(vertex.tangent.x, vertex.tangent.y, vertex.tangent.z, 0.0f);
+    vertex.tangent = vec4(-along.x, -along.y, -along.z, 0.0f);
     return vertex;
 }
 layout(std430, binding = 0) readonly buffer points_buffer { join_point points[]; };
@@ -728,18 +734,22 @@ surface_vertex tube_vertex(uint i) {
     s.tangent = tubes[3u * i + 2u];
     return s;
 }
-void kernel_map(uint i) {
-    join_point p = points[i];
-    surface_vertex a = tube_vertex(p.a);
-    surface_vertex s;
-    if (p.child == 0xffffffffu) {
-        s = join_turned(p, a);
-    } else {
-        s = join_vertex(p, a, tube_vertex(p.b), tube_vertex(p.c), tube_vertex(p.child / 2u));
-    }
+void set_vertex(uint i, surface_vertex s) {
     vertices[3u * i] = vec4(s.position, s.u);
     vertices[3u * i + 1u] = vec4(s.normal, s.v);
     vertices[3u * i + 2u] = s.tangent;
+}
+void kernel_map(uint i) {
+    join_point p = points[i];
+    surface_vertex a = tube_vertex(p.a);
+    if (p.child == 0xffffffffu) {
+        set_vertex(2u * i, join_turned(p, a));
+        return;
+    }
+    surface_vertex child = tube_vertex(p.child);
+    surface_vertex s = join_vertex(p, a, tube_vertex(p.b), tube_vertex(p.c), child);
+    set_vertex(2u * i, s);
+    set_vertex(2u * i + 1u, join_vertex_of_child(s, child));
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
 void main() {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ab5262b0d51252450ee939c3928087467f35dda7df3fee592be9177e62c73f5e
+// sha256 360e45d9020f2f8adfacd180df99a060c865aae1f6e6b61be3692e6cab19ca21
 #pragma once
 
 #include <skybark/kernels/branch_tip.hpp>
@@ -302,7 +302,7 @@ struct join_point {
     uint a;
     uint b;
     uint c;
-    uint child; // 2 * (vertex of the child's first ring), + 1 for the child's texture coordinates
+    uint child; // the vertex of the child's first ring above it
     float at_a;
     float at_b;
     float at_c;
@@ -324,22 +324,23 @@ surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, sur
     vec3 first = vec3(a.tangent.x, a.tangent.y, a.tangent.z);
     vec3 tangent = unit_or(vec3(along.x, along.y, along.z), first);
     vertex.tangent = vec4(tangent.x, tangent.y, tangent.z, 0.0f);
-    if ((p.child & 1u) != 0u) {
-        vec3 up = child.position - vertex.position;
-        vertex.u = child.u;
-        vertex.v = child.v - sqrt(dot3(up, up));
-        vertex.tangent = vec4(child.tangent.x, child.tangent.y, child.tangent.z, 0.0f);
-    }
     return vertex;
 }
-surface_vertex tip_vertex(branch_end e, vec4 corner, uint sides, bool base) {
-    branch_ring ring = branch_ring_at_end(e);
-    surface_vertex vertex = branch_vertex(ring, corner);
+surface_vertex join_vertex_of_child(surface_vertex vertex, surface_vertex child) {
+    vec3 up = child.position - vertex.position;
+    vertex.u = child.u;
+    vertex.v = child.v - sqrt(dot3(up, up));
+    vertex.tangent = vec4(child.tangent.x, child.tangent.y, child.tangent.z, 0.0f);
+    return vertex;
+}
+surface_vertex tip_vertex(branch_ring ring, vec4 corner, vec4 next, bool base) {
+    surface_vertex vertex;
+    vec3 along = ring.x * corner.y + ring.z * corner.x;
     vertex.position = ring.centre + ring.y * (base ? 0.0f : 0.5f * ring.radius);
     vertex.normal = base ? ring.y * -1.0f : ring.y;
-    vertex.u = corner.z + 0.5f / float(sides);
+    vertex.u = 0.5f * (corner.z + next.z);
     vertex.v = base ? ring.path - ring.radius : ring.path + ring.radius;
-    vertex.tangent = vec4(vertex.tangent.x, vertex.tangent.y, vertex.tangent.z, 0.0f);
+    vertex.tangent = vec4(-along.x, -along.y, -along.z, 0.0f);
     return vertex;
 }
 layout(std430, binding = 0) readonly buffer tips_buffer { uint tips[]; };
@@ -347,11 +348,15 @@ layout(std430, binding = 1) readonly buffer ends_buffer { branch_end ends[]; };
 layout(std430, binding = 2) readonly buffer corners_buffer { vec4 corners[]; };
 layout(std430, binding = 3) writeonly buffer vertices_buffer { vec4 vertices[]; };
 void kernel_map(uint i) {
-    uint tip = tips[i / sides];
-    surface_vertex s = tip_vertex(ends[tip / 2u], corners[i % sides], sides, (tip & 1u) != 0u);
-    vertices[3u * i] = vec4(s.position, s.u);
-    vertices[3u * i + 1u] = vec4(s.normal, s.v);
-    vertices[3u * i + 2u] = s.tangent;
+    bool base = (tips[i] & 1u) != 0u;
+    branch_ring ring = branch_ring_at_end(ends[tips[i] / 2u]);
+    for (uint c = 0u; c < sides; ++c) {
+        surface_vertex s = tip_vertex(ring, corners[c], corners[c + 1u], base);
+        uint at = 3u * (i * sides + c);
+        vertices[at] = vec4(s.position, s.u);
+        vertices[at + 1u] = vec4(s.normal, s.v);
+        vertices[at + 2u] = s.tangent;
+    }
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
@@ -660,7 +665,7 @@ struct join_point {
     uint a;
     uint b;
     uint c;
-    uint child; // 2 * (vertex of the child's first ring), + 1 for the child's texture coordinates
+    uint child; // the vertex of the child's first ring above it
     float at_a;
     float at_b;
     float at_c;
@@ -682,22 +687,23 @@ surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, sur
     vec3 first = vec3(a.tangent.x, a.tangent.y, a.tangent.z);
     vec3 tangent = unit_or(vec3(along.x, along.y, along.z), first);
     vertex.tangent = vec4(tangent.x, tangent.y, tangent.z, 0.0f);
-    if ((p.child & 1u) != 0u) {
-        vec3 up = child.position - vertex.position;
-        vertex.u = child.u;
-        vertex.v = child.v - sqrt(dot3(up, up));
-        vertex.tangent = vec4(child.tangent.x, child.tangent.y, child.tangent.z, 0.0f);
-    }
     return vertex;
 }
-surface_vertex tip_vertex(branch_end e, vec4 corner, uint sides, bool base) {
-    branch_ring ring = branch_ring_at_end(e);
-    surface_vertex vertex = branch_vertex(ring, corner);
+surface_vertex join_vertex_of_child(surface_vertex vertex, surface_vertex child) {
+    vec3 up = child.position - vertex.position;
+    vertex.u = child.u;
+    vertex.v = child.v - sqrt(dot3(up, up));
+    vertex.tangent = vec4(child.tangent.x, child.tangent.y, child.tangent.z, 0.0f);
+    return vertex;
+}
+surface_vertex tip_vertex(branch_ring ring, vec4 corner, vec4 next, bool base) {
+    surface_vertex vertex;
+    vec3 along = ring.x * corner.y + ring.z * corner.x;
     vertex.position = ring.centre + ring.y * (base ? 0.0f : 0.5f * ring.radius);
     vertex.normal = base ? ring.y * -1.0f : ring.y;
-    vertex.u = corner.z + 0.5f / float(sides);
+    vertex.u = 0.5f * (corner.z + next.z);
     vertex.v = base ? ring.path - ring.radius : ring.path + ring.radius;
-    vertex.tangent = vec4(vertex.tangent.x, vertex.tangent.y, vertex.tangent.z, 0.0f);
+    vertex.tangent = vec4(-along.x, -along.y, -along.z, 0.0f);
     return vertex;
 }
 layout(std430, binding = 0) readonly buffer tips_buffer { uint tips[]; };
@@ -705,11 +711,15 @@ layout(std430, binding = 1) readonly buffer ends_buffer { branch_end ends[]; };
 layout(std430, binding = 2) readonly buffer corners_buffer { vec4 corners[]; };
 layout(std430, binding = 3) writeonly buffer vertices_buffer { vec4 vertices[]; };
 void kernel_map(uint i) {
-    uint tip = tips[i / sides];
-    surface_vertex s = tip_vertex(ends[tip / 2u], corners[i % sides], sides, (tip & 1u) != 0u);
-    vertices[3u * i] = vec4(s.position, s.u);
-    vertices[3u * i + 1u] = vec4(s.normal, s.v);
-    vertices[3u * i + 2u] = s.tangent;
+    bool base = (tips[i] & 1u) != 0u;
+    branch_ring ring = branch_ring_at_end(ends[tips[i] / 2u]);
+    for (uint c = 0u; c < sides; ++c) {
+        surface_vertex s = tip_vertex(ring, corners[c], corners[c + 1u], base);
+        uint at = 3u * (i * sides + c);
+        vertices[at] = vec4(s.position, s.u);
+        vertices[at + 1u] = vec4(s.normal, s.v);
+        vertices[at + 2u] = s.tangent;
+    }
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
 void main() {
