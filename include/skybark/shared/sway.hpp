@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 411369ed3780fcf804036782d0dd8c3eecc481d0f6cd6bbae49ad3c705d73c17
+// sha256 126901c1db1a81d2be405c250f0bee169f58202ff0aff437546474878f0e5917
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -161,13 +161,13 @@ inline float sway_sinc(float s) {
 // The rotation by a rotation vector of any length.
 inline vec4 sway_rotation(vec3 bend) {
     float square = sway_dot(bend, bend);
-    float kept = 1.0f;
-    if (square > 9.8f) {
-        float angle = sqrt(square);
-        float left = angle - 6.2831853f * floor(angle * 0.15915494f + 0.5f);
-        kept = left / angle;
-        square = left * left;
-    }
+    float angle = sqrt(square);
+    float turns = floor(angle * 0.15915494f + 0.5f);
+    // Exactly the angle up to half a turn. Where it is so long that rounding is turns, any will do.
+    float left = min(max(angle - 6.2831853f * turns, -3.1415927f), 3.1415927f);
+    // Up to 1 rad the angle is what is kept of itself, without a division by nothing.
+    float kept = (left + max(1.0f - angle, 0.0f)) / max(angle, 1.0f);
+    square = left * left;
     float s = sway_sinc(0.25f * square);
     float c = sway_sinc(0.0625f * square);
     float by = 0.5f * s * kept;
@@ -275,7 +275,8 @@ inline sway_parted sway_part(sway_joint joint, sway_carry sum, sway_rule rule, v
     d.xx = a.xx + rule.hold;
     d.yy = a.yy + rule.hold;
     d.zz = a.zz + rule.hold;
-    sway_sym y = sway_inverse(d, rule.hold + 1e-6f * (a.xx + a.yy + a.zz));
+    // Layouts keep every inertia above 5e-5 of what it carries: less than these is rounding.
+    sway_sym y = sway_inverse(d, rule.hold + 4e-6f * (a.xx + a.yy + a.zz));
     // Of y a = 1 - hold y the product loses nothing where the hold is large or small.
     sway_sym give = sway_product(y, a);
 
@@ -289,9 +290,12 @@ inline sway_parted sway_part(sway_joint joint, sway_carry sum, sway_rule rule, v
     vec3 spin_left = spin - sway_times(give, torque);
     vec3 left = momentum - (b0 * free.x + b1 * free.y + b2 * free.z);
     vec3 c0 = vec3(sum.ac.z, sum.ac.w, sum.c.x) - (y0 * b0.x + y1 * b1.x + y2 * b2.x);
-    float cyy = sum.c.y - (b0.y * y0.y + b1.y * y1.y + b2.y * y2.y);
+    float least = 4e-6f * (sum.ac.z + sum.c.y + sum.c.w);
+    float cxx = max(c0.x, least);
+    float cyy = max(sum.c.y - (b0.y * y0.y + b1.y * y1.y + b2.y * y2.y), least);
     float cyz = sum.c.z - (b0.y * y0.z + b1.y * y1.z + b2.y * y2.z);
-    float czz = sum.c.w - (b0.z * y0.z + b1.z * y1.z + b2.z * y2.z);
+    float czz = max(sum.c.w - (b0.z * y0.z + b1.z * y1.z + b2.z * y2.z), least);
+    c0.x = cxx;
     vec3 c1 = vec3(c0.y, cyy, cyz);
     vec3 c2 = vec3(c0.z, cyz, czz);
 

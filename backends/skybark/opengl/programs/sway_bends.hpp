@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 3c5b3dc3db635646d721714d4cfb7c86468ff81248243637c6f8f4f62ea5ae82
+// sha256 571880ba21b1f429b0bc358494af0527f3d98bd76d12cb27c1762da6ad9af8a0
 #pragma once
 
 #include <skybark/kernels/sway_bends.hpp>
@@ -286,13 +286,11 @@ float sway_sinc(float s) {
 }
 vec4 sway_rotation(vec3 bend) {
     float square = sway_dot(bend, bend);
-    float kept = 1.0f;
-    if (square > 9.8f) {
-        float angle = sqrt(square);
-        float left = angle - 6.2831853f * floor(angle * 0.15915494f + 0.5f);
-        kept = left / angle;
-        square = left * left;
-    }
+    float angle = sqrt(square);
+    float turns = floor(angle * 0.15915494f + 0.5f);
+    float left = min(max(angle - 6.2831853f * turns, -3.1415927f), 3.1415927f);
+    float kept = (left + max(1.0f - angle, 0.0f)) / max(angle, 1.0f);
+    square = left * left;
     float s = sway_sinc(0.25f * square);
     float c = sway_sinc(0.0625f * square);
     float by = 0.5f * s * kept;
@@ -383,7 +381,7 @@ sway_parted sway_part(sway_joint joint, sway_carry sum, sway_rule rule, vec4 rot
     d.xx = a.xx + rule.hold;
     d.yy = a.yy + rule.hold;
     d.zz = a.zz + rule.hold;
-    sway_sym y = sway_inverse(d, rule.hold);
+    sway_sym y = sway_inverse(d, rule.hold + 4e-6f * (a.xx + a.yy + a.zz));
     sway_sym give = sway_product(y, a);
     vec3 torque = spin - quaternion_rotate(rotation, bend) * rule.spring;
     vec3 free = sway_times(y, torque);
@@ -393,9 +391,12 @@ sway_parted sway_part(sway_joint joint, sway_carry sum, sway_rule rule, vec4 rot
     vec3 spin_left = spin - sway_times(give, torque);
     vec3 left = momentum - (b0 * free.x + b1 * free.y + b2 * free.z);
     vec3 c0 = vec3(sum.ac.z, sum.ac.w, sum.c.x) - (y0 * b0.x + y1 * b1.x + y2 * b2.x);
-    float cyy = sum.c.y - (b0.y * y0.y + b1.y * y1.y + b2.y * y2.y);
+    float least = 4e-6f * (sum.ac.z + sum.c.y + sum.c.w);
+    float cxx = max(c0.x, least);
+    float cyy = max(sum.c.y - (b0.y * y0.y + b1.y * y1.y + b2.y * y2.y), least);
     float cyz = sum.c.z - (b0.y * y0.z + b1.y * y1.z + b2.y * y2.z);
-    float czz = sum.c.w - (b0.z * y0.z + b1.z * y1.z + b2.z * y2.z);
+    float czz = max(sum.c.w - (b0.z * y0.z + b1.z * y1.z + b2.z * y2.z), least);
+    c0.x = cxx;
     vec3 c1 = vec3(c0.y, cyy, cyz);
     vec3 c2 = vec3(c0.z, cyz, czz);
     vec3 h0 = y0 * rule.hold;
@@ -919,13 +920,11 @@ float sway_sinc(float s) {
 }
 vec4 sway_rotation(vec3 bend) {
     float square = sway_dot(bend, bend);
-    float kept = 1.0f;
-    if (square > 9.8f) {
-        float angle = sqrt(square);
-        float left = angle - 6.2831853f * floor(angle * 0.15915494f + 0.5f);
-        kept = left / angle;
-        square = left * left;
-    }
+    float angle = sqrt(square);
+    float turns = floor(angle * 0.15915494f + 0.5f);
+    float left = min(max(angle - 6.2831853f * turns, -3.1415927f), 3.1415927f);
+    float kept = (left + max(1.0f - angle, 0.0f)) / max(angle, 1.0f);
+    square = left * left;
     float s = sway_sinc(0.25f * square);
     float c = sway_sinc(0.0625f * square);
     float by = 0.5f * s * kept;
@@ -1016,7 +1015,7 @@ sway_parted sway_part(sway_joint joint, sway_carry sum, sway_rule rule, vec4 rot
     d.xx = a.xx + rule.hold;
     d.yy = a.yy + rule.hold;
     d.zz = a.zz + rule.hold;
-    sway_sym y = sway_inverse(d, rule.hold);
+    sway_sym y = sway_inverse(d, rule.hold + 4e-6f * (a.xx + a.yy + a.zz));
     sway_sym give = sway_product(y, a);
     vec3 torque = spin - quaternion_rotate(rotation, bend) * rule.spring;
     vec3 free = sway_times(y, torque);
@@ -1026,9 +1025,12 @@ sway_parted sway_part(sway_joint joint, sway_carry sum, sway_rule rule, vec4 rot
     vec3 spin_left = spin - sway_times(give, torque);
     vec3 left = momentum - (b0 * free.x + b1 * free.y + b2 * free.z);
     vec3 c0 = vec3(sum.ac.z, sum.ac.w, sum.c.x) - (y0 * b0.x + y1 * b1.x + y2 * b2.x);
-    float cyy = sum.c.y - (b0.y * y0.y + b1.y * y1.y + b2.y * y2.y);
+    float least = 4e-6f * (sum.ac.z + sum.c.y + sum.c.w);
+    float cxx = max(c0.x, least);
+    float cyy = max(sum.c.y - (b0.y * y0.y + b1.y * y1.y + b2.y * y2.y), least);
     float cyz = sum.c.z - (b0.y * y0.z + b1.y * y1.z + b2.y * y2.z);
-    float czz = sum.c.w - (b0.z * y0.z + b1.z * y1.z + b2.z * y2.z);
+    float czz = max(sum.c.w - (b0.z * y0.z + b1.z * y1.z + b2.z * y2.z), least);
+    c0.x = cxx;
     vec3 c1 = vec3(c0.y, cyy, cyz);
     vec3 c2 = vec3(c0.z, cyz, czz);
     vec3 h0 = y0 * rule.hold;

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 7109915721dc4d982933c36729e3a905b96e2c215f0750a36b55177287314c2f
+// sha256 f11f9cb8287086af3ff0c43d866d104be11459ea1cf278151e621eddbc1973c1
 #pragma once
 
 #include <skybark/kernels/sway_energies.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 8b2f5df4bd1cef545c3e1c131b5897526d9d34b4679fdb3d326023e8dbb33451
+// sha256 9ae3fcf5d3e6e0a2f8874d1da4643e6b6d7ca699f02bb3aa24a03c72d1395f21
 #pragma once
 
 #include <skybark/kernels/sway_forces.hpp>

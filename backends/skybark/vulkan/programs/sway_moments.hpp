@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f1b2e46c42c1373fa67eaab15cfc58c95956b06082ee48da34327ba0598ce58d
+// sha256 154b2c2330f4bd755291f7411d8326fcc61cf0678312b9cb7b80039c51c095cf
 #pragma once
 
 #include <skybark/kernels/sway_moments.hpp>
