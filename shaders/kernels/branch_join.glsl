@@ -30,8 +30,7 @@ void kernel_map(uint i) {
         set_vertex(2u * i, join_turned(p, a));
         return;
     }
-    surface_vertex child = tube_vertex(p.child);
-    surface_vertex s = join_vertex(p, a, tube_vertex(p.b), tube_vertex(p.c), child);
+    surface_vertex s = join_vertex(p, a, tube_vertex(p.b), tube_vertex(p.c));
     set_vertex(2u * i, s);
-    set_vertex(2u * i + 1u, join_vertex_of_child(s, child));
+    set_vertex(2u * i + 1u, join_vertex_of_child(s, tube_vertex(p.child)));
 }

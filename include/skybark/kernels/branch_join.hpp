@@ -29,11 +29,9 @@ struct branch_join {
             vertices[2 * i] = shared::join_turned(p, tubes[p.a]);
             return;
         }
-        const surface_vertex& child = tubes[p.child];
-        const surface_vertex own =
-            shared::join_vertex(p, tubes[p.a], tubes[p.b], tubes[p.c], child);
+        const surface_vertex own = shared::join_vertex(p, tubes[p.a], tubes[p.b], tubes[p.c]);
         vertices[2 * i] = own;
-        vertices[2 * i + 1] = shared::join_vertex_of_child(own, child);
+        vertices[2 * i + 1] = shared::join_vertex_of_child(own, tubes[p.child]);
     }
 };
 

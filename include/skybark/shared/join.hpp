@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c935e4d0c9c4f9ce0e73aad48e60391d23cf0f713d53a504e72ab9b144e55d6d
+// sha256 7f0224dde59266a892b5c4b9e2c8e1a7e133ddfacf80893add592196c489ed64
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -30,14 +30,13 @@ inline surface_vertex join_turned(join_point p, surface_vertex a) {
 }
 
 // A vertex of the loop along which the surfaces of a branch and its child meet, with the branch's
-// texture coordinates. The normal is half way between the two surfaces'. There is no one direction
-// of growing u, so tangent.w is 0.
-inline surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, surface_vertex c,
-                           surface_vertex child) {
+// texture coordinates. The normal is the branch's: the surface turns into the child's between this
+// loop and the child's first ring. There is no one direction of growing u, so tangent.w is 0.
+inline surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, surface_vertex c) {
     surface_vertex vertex;
     vertex.position = (a.position * p.at_a + b.position * p.at_b) + c.position * p.at_c;
-    vec3 outward = unit_or((a.normal * p.at_a + b.normal * p.at_b) + c.normal * p.at_c, a.normal);
-    vertex.normal = unit_or(outward + child.normal, outward);
+    vertex.normal =
+        unit_or((a.normal * p.at_a + b.normal * p.at_b) + c.normal * p.at_c, a.normal);
     vertex.u = ((a.u * p.at_a + b.u * p.at_b) + c.u * p.at_c) + p.turn;
     vertex.v = (a.v * p.at_a + b.v * p.at_b) + c.v * p.at_c;
     vec4 along = (a.tangent * p.at_a + b.tangent * p.at_b) + c.tangent * p.at_c;

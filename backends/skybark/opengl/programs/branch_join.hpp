@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 65628dcfae839de0087a74853d1b4868d28429e3154c730409b37a9121af9316
+// sha256 60fd782fa58fac41915dd439e1daacd84b876d2dfb8acc023770273f557b5a38
 #pragma once
 
 #include <skybark/kernels/branch_join.hpp>
@@ -311,12 +311,11 @@ surface_vertex join_turned(join_point p, surface_vertex a) {
     a.u = a.u + p.turn;
     return a;
 }
-surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, surface_vertex c,
-                           surface_vertex child) {
+surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, surface_vertex c) {
     surface_vertex vertex;
     vertex.position = (a.position * p.at_a + b.position * p.at_b) + c.position * p.at_c;
-    vec3 outward = unit_or((a.normal * p.at_a + b.normal * p.at_b) + c.normal * p.at_c, a.normal);
-    vertex.normal = unit_or(outward + child.normal, outward);
+    vertex.normal =
+        unit_or((a.normal * p.at_a + b.normal * p.at_b) + c.normal * p.at_c, a.normal);
     vertex.u = ((a.u * p.at_a + b.u * p.at_b) + c.u * p.at_c) + p.turn;
     vertex.v = (a.v * p.at_a + b.v * p.at_b) + c.v * p.at_c;
     vec4 along = (a.tangent * p.at_a + b.tangent * p.at_b) + c.tangent * p.at_c;
@@ -368,10 +367,9 @@ void kernel_map(uint i) {
         set_vertex(2u * i, join_turned(p, a));
         return;
     }
-    surface_vertex child = tube_vertex(p.child);
-    surface_vertex s = join_vertex(p, a, tube_vertex(p.b), tube_vertex(p.c), child);
+    surface_vertex s = join_vertex(p, a, tube_vertex(p.b), tube_vertex(p.c));
     set_vertex(2u * i, s);
-    set_vertex(2u * i + 1u, join_vertex_of_child(s, child));
+    set_vertex(2u * i + 1u, join_vertex_of_child(s, tube_vertex(p.child)));
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
@@ -689,12 +687,11 @@ surface_vertex join_turned(join_point p, surface_vertex a) {
     a.u = a.u + p.turn;
     return a;
 }
-surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, surface_vertex c,
-                           surface_vertex child) {
+surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, surface_vertex c) {
     surface_vertex vertex;
     vertex.position = (a.position * p.at_a + b.position * p.at_b) + c.position * p.at_c;
-    vec3 outward = unit_or((a.normal * p.at_a + b.normal * p.at_b) + c.normal * p.at_c, a.normal);
-    vertex.normal = unit_or(outward + child.normal, outward);
+    vertex.normal =
+        unit_or((a.normal * p.at_a + b.normal * p.at_b) + c.normal * p.at_c, a.normal);
     vertex.u = ((a.u * p.at_a + b.u * p.at_b) + c.u * p.at_c) + p.turn;
     vertex.v = (a.v * p.at_a + b.v * p.at_b) + c.v * p.at_c;
     vec4 along = (a.tangent * p.at_a + b.tangent * p.at_b) + c.tangent * p.at_c;
@@ -746,10 +743,9 @@ void kernel_map(uint i) {
         set_vertex(2u * i, join_turned(p, a));
         return;
     }
-    surface_vertex child = tube_vertex(p.child);
-    surface_vertex s = join_vertex(p, a, tube_vertex(p.b), tube_vertex(p.c), child);
+    surface_vertex s = join_vertex(p, a, tube_vertex(p.b), tube_vertex(p.c));
     set_vertex(2u * i, s);
-    set_vertex(2u * i + 1u, join_vertex_of_child(s, child));
+    set_vertex(2u * i + 1u, join_vertex_of_child(s, tube_vertex(p.child)));
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
 void main() {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 360e45d9020f2f8adfacd180df99a060c865aae1f6e6b61be3692e6cab19ca21
+// sha256 08455f4986afd76d3cc116e25c74fd8046f16c1c49e25a9cd86049e7a4f9847d
 #pragma once
 
 #include <skybark/kernels/branch_tip.hpp>
@@ -312,12 +312,11 @@ surface_vertex join_turned(join_point p, surface_vertex a) {
     a.u = a.u + p.turn;
     return a;
 }
-surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, surface_vertex c,
-                           surface_vertex child) {
+surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, surface_vertex c) {
     surface_vertex vertex;
     vertex.position = (a.position * p.at_a + b.position * p.at_b) + c.position * p.at_c;
-    vec3 outward = unit_or((a.normal * p.at_a + b.normal * p.at_b) + c.normal * p.at_c, a.normal);
-    vertex.normal = unit_or(outward + child.normal, outward);
+    vertex.normal =
+        unit_or((a.normal * p.at_a + b.normal * p.at_b) + c.normal * p.at_c, a.normal);
     vertex.u = ((a.u * p.at_a + b.u * p.at_b) + c.u * p.at_c) + p.turn;
     vertex.v = (a.v * p.at_a + b.v * p.at_b) + c.v * p.at_c;
     vec4 along = (a.tangent * p.at_a + b.tangent * p.at_b) + c.tangent * p.at_c;
@@ -675,12 +674,11 @@ surface_vertex join_turned(join_point p, surface_vertex a) {
     a.u = a.u + p.turn;
     return a;
 }
-surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, surface_vertex c,
-                           surface_vertex child) {
+surface_vertex join_vertex(join_point p, surface_vertex a, surface_vertex b, surface_vertex c) {
     surface_vertex vertex;
     vertex.position = (a.position * p.at_a + b.position * p.at_b) + c.position * p.at_c;
-    vec3 outward = unit_or((a.normal * p.at_a + b.normal * p.at_b) + c.normal * p.at_c, a.normal);
-    vertex.normal = unit_or(outward + child.normal, outward);
+    vertex.normal =
+        unit_or((a.normal * p.at_a + b.normal * p.at_b) + c.normal * p.at_c, a.normal);
     vertex.u = ((a.u * p.at_a + b.u * p.at_b) + c.u * p.at_c) + p.turn;
     vertex.v = (a.v * p.at_a + b.v * p.at_b) + c.v * p.at_c;
     vec4 along = (a.tangent * p.at_a + b.tangent * p.at_b) + c.tangent * p.at_c;

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 a3fc2a12b8d7e6c753fc08f950fbec4997d77c41999e93ba2fbbb6cad5ce52a2
+// sha256 419722e2e07ca6d66f385ef70e36e397ae3e70297606fe4c549995a250883098
 #pragma once
 
 #include <skybark/kernels/branch_tip.hpp>
