@@ -194,10 +194,9 @@ struct program<kernels::bark> : plain_program<kernels::bark> {
         const f4 w = choose((w1 == splat(0)) | (w2 == splat(0)), splat(0), (w1 + w2) * 0.5f);
 
         const v3 ab = b - a;
-        const f4 corner_height = heights_at(kernel, c[0][3], c[1][3], heights);
+        const heights_of_both h = both_heights(kernel, c[0][3], c[1][3], u, v, heights);
         const f4 most = splat(kernel.steepest) * square_root(dot(ab, ab));
-        const f4 wanted = kernel.relief * (heights_at(kernel, u, v, heights) -
-                                           0.5f * (corner_height + next(corner_height)));
+        const f4 wanted = kernel.relief * (h.middles - 0.5f * (h.corners + next(h.corners)));
         const f4 rise = choose(wanted > most, most, choose(wanted < -most, -most, wanted));
         const v3 round = na * dot(ab, na) - nb * dot(ab, nb);
         const v3 raised = middle - round * splat(0.125f * kernel.rounding) + n * rise;
@@ -212,6 +211,79 @@ struct program<kernels::bark> : plain_program<kernels::bark> {
             }
         }
     }
+
+    /// The map's heights at the corners and at the midpoints.
+    struct heights_of_both {
+        lanes::f4 corners, middles;
+    };
+    [[nodiscard]] static heights_of_both both_heights(const kernel_type& kernel, lanes::f4 u,
+                                                      lanes::f4 v, lanes::f4 middle_u,
+                                                      lanes::f4 middle_v, heights_span heights) {
+#    if defined(__x86_64__)
+        if (__builtin_cpu_supports("avx2")) {
+            return both_heights_avx2(kernel, u, v, middle_u, middle_v, heights);
+        }
+#    endif
+        return {heights_at(kernel, u, v, heights), heights_at(kernel, middle_u, middle_v, heights)};
+    }
+
+#    if defined(__x86_64__)
+    [[gnu::target("avx2")]] static __m256 texel_avx2(__m256 coordinate, std::uint32_t size) {
+        const __m256 part = _mm256_sub_ps(coordinate, _mm256_floor_ps(coordinate));
+        const __m256 zero = _mm256_setzero_ps();
+        const __m256 sure =
+            _mm256_and_ps(part, _mm256_and_ps(_mm256_cmp_ps(part, zero, _CMP_GE_OQ),
+                                              _mm256_cmp_ps(part, _mm256_set1_ps(1), _CMP_LE_OQ)));
+        const __m256 n = _mm256_set1_ps(static_cast<float>(size));
+        const __m256 x = _mm256_sub_ps(_mm256_mul_ps(sure, n), _mm256_set1_ps(0.5f));
+        return _mm256_blendv_ps(x, _mm256_add_ps(x, n), _mm256_cmp_ps(x, zero, _CMP_LT_OQ));
+    }
+
+    /// 0 in place of `size`.
+    [[gnu::target("avx2")]] static __m256i wrapped_avx2(__m256i at, std::uint32_t size) {
+        const __m256i n = _mm256_set1_epi32(static_cast<std::int32_t>(size));
+        return _mm256_and_si256(at, _mm256_cmpgt_epi32(n, at));
+    }
+
+    [[gnu::target("avx2")]] static __m256 mix_avx2(__m256 a, __m256 b, __m256 t) {
+        return _mm256_add_ps(a, _mm256_mul_ps(_mm256_sub_ps(b, a), t));
+    }
+
+    [[gnu::target("avx2")]] static __m256 pair_avx2(lanes::f4 a, lanes::f4 b) {
+        return _mm256_set_m128(reinterpret_cast<__m128>(b), reinterpret_cast<__m128>(a));
+    }
+
+    [[gnu::target("avx2")]] static heights_of_both
+    both_heights_avx2(const kernel_type& kernel, lanes::f4 u, lanes::f4 v, lanes::f4 middle_u,
+                      lanes::f4 middle_v, heights_span heights) {
+        const __m256 x =
+            texel_avx2(_mm256_mul_ps(pair_avx2(u, middle_u), _mm256_set1_ps(kernel.repeats_around)),
+                       kernel.width);
+        const __m256 y =
+            texel_avx2(_mm256_mul_ps(pair_avx2(v, middle_v), _mm256_set1_ps(kernel.repeats_along)),
+                       kernel.height);
+        const __m256 left = _mm256_floor_ps(x);
+        const __m256 low = _mm256_floor_ps(y);
+        const __m256i one = _mm256_set1_epi32(1);
+        const __m256i width = _mm256_set1_epi32(static_cast<std::int32_t>(kernel.width));
+        const __m256i x0 = wrapped_avx2(_mm256_cvttps_epi32(left), kernel.width);
+        const __m256i x1 = wrapped_avx2(_mm256_add_epi32(x0, one), kernel.width);
+        const __m256i y0 = wrapped_avx2(_mm256_cvttps_epi32(low), kernel.height);
+        const __m256i y1 = wrapped_avx2(_mm256_add_epi32(y0, one), kernel.height);
+        const __m256i row0 = _mm256_mullo_epi32(y0, width);
+        const __m256i row1 = _mm256_mullo_epi32(y1, width);
+        const float* map = heights.data();
+        const __m256 h00 = _mm256_i32gather_ps(map, _mm256_add_epi32(row0, x0), 4);
+        const __m256 h10 = _mm256_i32gather_ps(map, _mm256_add_epi32(row0, x1), 4);
+        const __m256 h01 = _mm256_i32gather_ps(map, _mm256_add_epi32(row1, x0), 4);
+        const __m256 h11 = _mm256_i32gather_ps(map, _mm256_add_epi32(row1, x1), 4);
+        const __m256 tx = _mm256_sub_ps(x, left);
+        const __m256 h =
+            mix_avx2(mix_avx2(h00, h10, tx), mix_avx2(h01, h11, tx), _mm256_sub_ps(y, low));
+        return {reinterpret_cast<lanes::f4>(_mm256_castps256_ps128(h)),
+                reinterpret_cast<lanes::f4>(_mm256_extractf128_ps(h, 1))};
+    }
+#    endif
 
     /// shared::bark_texel.
     [[nodiscard]] static lanes::f4 texel(lanes::f4 coordinate, std::uint32_t size) {
