@@ -4,6 +4,7 @@
 #include "support/closed_surface.hpp"
 #include "support/test_trees.hpp"
 
+#include <picture/bark_picture.hpp>
 #include <skybark/conformance/suite.hpp>
 #include <skybark/core/validated.hpp>
 #include <skybark/cpu/cpu.hpp>
@@ -122,7 +123,60 @@ void expect_the_cpus_bark(B& device) {
     }
 }
 
+/// A stem with bark, 160 x 120 pixels.
+template <backend B>
+std::vector<std::uint8_t> picture_of(B& device) {
+    const bark_options options = coarse_bark(0.2f);
+    const auto mesh = one_part_mesh<B>::make(device, support::closed_stem(8, 5));
+    const auto bark = bark_on(device, mesh, options);
+    EXPECT_TRUE(run(device, [&](auto& r) { bark.record(r, mesh); }));
+    const auto map = trees::make_bark_image(device, test_texture(), options, 0.4f);
+    EXPECT_TRUE(map);
+    picture::picture_options size;
+    size.width = 160;
+    size.height = 120;
+    size.supersampling = 1;
+    auto pixels =
+        picture::draw_bark(device, mesh, bark, *map, kernels::lit_bark{}, glm::vec3(-1, 0, -1),
+                           glm::vec3(1, 3, 1), {{0.5f, 1.6f, 4}, {0.3f, 1.5f, 0}, 40}, size);
+    EXPECT_TRUE(pixels);
+    return *std::move(pixels);
+}
+
+/// The same to the eye: edges may fall on the other side of a pixel's centre.
+template <backend B>
+void expect_the_cpus_picture(B& device) {
+    cpu::device cpu;
+    const auto expected = picture_of(cpu);
+    const auto actual = picture_of(device);
+    ASSERT_EQ(actual.size(), expected.size());
+    double sum = 0;
+    double darkest = 255;
+    double lightest = 0;
+    for (std::size_t i = 0; i < actual.size(); ++i) {
+        sum += std::abs(int{actual[i]} - int{expected[i]});
+        if (i % 4 == 0) {
+            darkest = std::min(darkest, static_cast<double>(actual[i]));
+            lightest = std::max(lightest, static_cast<double>(actual[i]));
+        }
+    }
+    EXPECT_LT(sum / static_cast<double>(actual.size()), 1.0);
+    EXPECT_GT(lightest - darkest, 100); // something is there: furrows, and sky
+}
+
 } // namespace
+
+TEST(bark, opengl_draws_the_cpus_picture) {
+    auto gl = open_opengl();
+    SKYBARK_SKIP_WITHOUT(gl, "opengl");
+    expect_the_cpus_picture(gl->device());
+}
+
+TEST(bark, vulkan_draws_the_cpus_picture) {
+    auto vk = vulkan::headless::create({});
+    SKYBARK_SKIP_WITHOUT(vk, "vulkan");
+    expect_the_cpus_picture(vk->device());
+}
 
 TEST(bark, opengl_has_the_cpus_bits) {
     auto gl = open_opengl();

@@ -46,9 +46,8 @@ struct lit_bark {
                                            t * ((texel.x * 2.0f - 1.0f) * slope) +
                                            b * ((texel.y * 2.0f - 1.0f) * slope));
         const glm::vec3 to_sun(scene[0].sky.to_sun);
-        const float sun = glm::dot(geometric, to_sun) > 0.0f
-                              ? sun_at(scene[0], position, geometric, maps)
-                              : 0.0f;
+        const float sun =
+            glm::dot(geometric, to_sun) > 0.0f ? sun_at(scene[0], position, geometric, maps) : 0.0f;
         return {glm::vec4(shared::lit(albedo, n, scene[0].sky, sun, ambient_of(scene[0], n)), 1.0f),
                 true};
     }
