@@ -11,6 +11,9 @@
 // Most triangles of a tree are twigs far below the threshold. Those stay where they are, in the
 // mesh's own vertices, under an index buffer of their own; only the others become a list. Counts
 // stay on the device. The list's room has a reserve; `update` gives more where it was too little.
+//
+// A triangle with two long edges becomes three in each pass, so long narrow ones cost more than
+// their area: best are meshes whose rings lie about as far apart as their corners.
 
 #include <skybark/core/backend.hpp>
 #include <skybark/kernels/bark.hpp>
