@@ -7,5 +7,6 @@
 #include <skybark/trees/bark_mesh.hpp>
 #include <skybark/trees/branch_mesh.hpp>
 #include <skybark/trees/build_skeleton.hpp>
+#include <skybark/trees/closed_mesh.hpp>
 #include <skybark/trees/species.hpp>
 #include <skybark/trees/wind.hpp>
