@@ -39,6 +39,8 @@ VULKAN = [
     ("kernel_fragment", "draw.vert"),
     ("kernel_fragment", "draw.frag"),
 ]
+# Formulas that the CPU backend computes four at a time.
+LANES = {"sway"}
 INCLUDE = re.compile(r'^#include\s+(?:"([^"]+)"|(KERNEL))\s*$')
 
 
@@ -146,6 +148,22 @@ def shared_header(path):
     return Header(f"include/skybark/shared/{path.stem}.hpp", ["cpp 1", *includes, text], body)
 
 
+def lanes_header(path):
+    """A formula without choices for the CPU's vectors: each number becomes four (cpu/four.hpp)."""
+    text = re.sub(r"^#include .*\n", "", path.read_text(), flags=re.M)
+
+    def body():
+        lines = re.sub(r"^(?=(?!struct|return|else)[a-z_]\w*\s+[a-z_]\w*\()", "inline ", text, flags=re.M)
+        lines = re.sub(r"\b(float|uint)\b", "number", lines)
+        return (
+            "#include <skybark/cpu/four.hpp>\n\n#if defined(__GNUC__)\n\n"
+            f"namespace skybark::cpu::four {{\n\n{lines}\n"
+            "} // namespace skybark::cpu::four\n\n#endif\n"
+        )
+
+    return Header(f"backends/skybark/cpu/programs/{path.stem}.hpp", ["lanes 1", text], body)
+
+
 def opengl_header(path):
     name, kernel_text = path.stem, path.read_text()
     texts = {}
@@ -222,6 +240,8 @@ def headers():
     for path in sorted((HERE / "shared").glob("*.glsl")):
         if path.stem != "records":
             yield shared_header(path)
+        if path.stem in LANES:
+            yield lanes_header(path)
     for path in sorted((HERE / "kernels").glob("*.glsl")):
         yield opengl_header(path)
         yield vulkan_header(path)

@@ -1,7 +1,7 @@
 // Device side of skybark::kernels::sway_energies.
 #define KERNEL_PARAMETERS float seconds;
 #include "../skeletons/parameters.glsl"
-#include "../shared/sway.glsl"
+#include "../shared/sway_tree.glsl"
 layout(std430, binding = 0) readonly buffer joints_buffer { sway_joint joints[]; };
 layout(std430, binding = 1) readonly buffer states_buffer { sway_state states[]; };
 layout(std430, binding = 2) readonly buffer loads_buffer { segment_load loads[]; };

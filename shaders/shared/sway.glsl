@@ -416,17 +416,6 @@ sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     return a;
 }
 
-// What follows for the whole tree. The scale undoes what the change of pose did to the kinetic
-// energy. Where rounding has made more energy than the loads' work allows, it takes that away too.
-// Below 1e-30 J there is no motion to speak of, and its squares leave the range of floats.
-sway_energy sway_settled(sway_energy tree, float budget) {
-    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
-    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
-    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
-    return tree;
-}
-
 // Static equilibrium: what a segment hands to its parent, about the parent's base.
 struct sway_moment {
     vec4 a;      // stiffness against turning: xx xy xz yy

@@ -723,6 +723,63 @@ TEST(sway, any_number_of_threads_gives_the_same_bits) {
     EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]), 0);
 }
 
+// The CPU backend computes four joints at a time; the plain kernels say what must come out.
+TEST(sway, four_at_a_time_has_the_plain_kernels_bits) {
+    for (const std::uint32_t count : {1u, 2u, 3u, 5u, 300u}) {
+        const support::test_tree tree = support::wild_scan(count, count);
+        const auto joints = trees::layout_sway(tree.skeleton).joints;
+        support::random_source random(count);
+        const auto filled = [&]<class T>(std::vector<T> records) {
+            for (T& r : records) {
+                float values[sizeof(T) / 4];
+                for (float& v : values) {
+                    v = static_cast<float>(random.between(-2, 2));
+                }
+                std::memcpy(&r, values, sizeof r);
+            }
+            return records;
+        };
+        const auto loads = filled(std::vector<segment_load>(count));
+        const auto states = filled(std::vector<shared::sway_state>(count + 1));
+        const auto energies = filled(std::vector<shared::sway_energy>(count));
+        const auto carried = filled(std::vector<shared::sway_carry>(count));
+        const auto gains = filled(std::vector<shared::sway_gain>(count));
+        const auto compare = [&](const auto& a, const auto& b, const char* what) {
+            EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]), 0) << what << count;
+        };
+        {
+            using K = kernels::sway_inertia;
+            std::vector<shared::sway_carry> a(count), b(count);
+            std::vector<shared::sway_gain> c(count), d(count);
+            const auto go = [&](const auto& run, auto& carry, auto& gain) {
+                run(K{0.02f}, range{0, count}, std::span(joints), std::span(loads),
+                    std::span(states), std::span(energies), std::span(carried), std::span(carry),
+                    std::span(gain));
+            };
+            go([](auto... x) { cpu::plain_program<K>::map(x...); }, a, c);
+            go([](auto... x) { cpu::program<K>::map(x...); }, b, d);
+            compare(a, b, "carry ");
+            compare(c, d, "gain ");
+        }
+        {
+            using K = kernels::sway_motion;
+            std::vector<shared::sway_state> a(count), b(count);
+            std::vector<segment_pose> c(count), d(count);
+            std::vector<glm::vec4> e(count), f(count);
+            const auto go = [&](const auto& run, auto& state, auto& pose, auto& velocity) {
+                run(K{0.02f}, range{0, count}, std::span(joints), std::span(energies),
+                    std::span(gains), std::span(states), std::span(states), std::span(state),
+                    std::span(pose), std::span(velocity));
+            };
+            go([](auto... x) { cpu::plain_program<K>::map(x...); }, a, c, e);
+            go([](auto... x) { cpu::program<K>::map(x...); }, b, d, f);
+            compare(a, b, "state ");
+            compare(c, d, "pose ");
+            compare(e, f, "velocity ");
+        }
+    }
+}
+
 TEST(sway, frames_allocate_nothing) {
     if (SKYBARK_TEST_COUNTS_ALLOCATIONS == 0) {
         GTEST_SKIP() << "Allocations are the sanitizer's here.";

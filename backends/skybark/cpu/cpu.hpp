@@ -5,4 +5,5 @@
 #include <skybark/cpu/device.hpp>
 #include <skybark/cpu/hermite_branch.hpp>
 #include <skybark/cpu/leaf_blade.hpp>
+#include <skybark/cpu/sway.hpp>
 #include <skybark/cpu/wave_wind.hpp>

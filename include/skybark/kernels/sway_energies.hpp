@@ -3,6 +3,7 @@
 
 #include <skybark/core/kernel.hpp>
 #include <skybark/kernels/sway_records.hpp>
+#include <skybark/shared/sway_tree.hpp>
 
 namespace skybark::kernels {
 

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 126901c1db1a81d2be405c250f0bee169f58202ff0aff437546474878f0e5917
+// sha256 599734bcedbc227a0fe8cba49dd30b938c23b82a086846c7d39cc4800a9b8a05
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -422,17 +422,6 @@ inline sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.elastic = a.elastic + b.elastic;
     a.work = a.work + b.work;
     return a;
-}
-
-// What follows for the whole tree. The scale undoes what the change of pose did to the kinetic
-// energy. Where rounding has made more energy than the loads' work allows, it takes that away too.
-// Below 1e-30 J there is no motion to speak of, and its squares leave the range of floats.
-inline sway_energy sway_settled(sway_energy tree, float budget) {
-    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
-    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
-    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
-    return tree;
 }
 
 // Static equilibrium: what a segment hands to its parent, about the parent's base.

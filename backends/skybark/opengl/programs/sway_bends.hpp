@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 571880ba21b1f429b0bc358494af0527f3d98bd76d12cb27c1762da6ad9af8a0
+// sha256 a6cd085a6457452c9080ea21abf9829fe5a16a98ab56bae718ca7ee2a3a89cff
 #pragma once
 
 #include <skybark/kernels/sway_bends.hpp>
@@ -507,13 +507,6 @@ sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.elastic = a.elastic + b.elastic;
     a.work = a.work + b.work;
     return a;
-}
-sway_energy sway_settled(sway_energy tree, float budget) {
-    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
-    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
-    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
-    return tree;
 }
 struct sway_moment {
     vec4 a;      // stiffness against turning: xx xy xz yy
@@ -1141,13 +1134,6 @@ sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.elastic = a.elastic + b.elastic;
     a.work = a.work + b.work;
     return a;
-}
-sway_energy sway_settled(sway_energy tree, float budget) {
-    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
-    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
-    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
-    return tree;
 }
 struct sway_moment {
     vec4 a;      // stiffness against turning: xx xy xz yy

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b3c34b4d8c9a281c13ddb120657f759e248ac29cbfb59a26f51239935d4e5697
+// sha256 3e4c2223ee07a6b7995f22f29aaa1152e813daca0a9cb5d5181d1d8efeadd9a2
 #pragma once
 
 #include <skybark/kernels/sway_energies.hpp>
@@ -509,13 +509,6 @@ sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.work = a.work + b.work;
     return a;
 }
-sway_energy sway_settled(sway_energy tree, float budget) {
-    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
-    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
-    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
-    return tree;
-}
 struct sway_moment {
     vec4 a;      // stiffness against turning: xx xy xz yy
     vec4 ag;     // yz zz; the own part of it, and 0
@@ -614,6 +607,13 @@ sway_state sway_turned(sway_joint joint, sway_gain gain, sway_state was, vec4 pa
     now.before = now.after;
     now.budget = -1.0f;
     return now;
+}
+sway_energy sway_settled(sway_energy tree, float budget) {
+    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
+    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
+    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
+    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
+    return tree;
 }
 layout(std430, binding = 0) readonly buffer joints_buffer { sway_joint joints[]; };
 layout(std430, binding = 1) readonly buffer states_buffer { sway_state states[]; };
@@ -1146,13 +1146,6 @@ sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.work = a.work + b.work;
     return a;
 }
-sway_energy sway_settled(sway_energy tree, float budget) {
-    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
-    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
-    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
-    return tree;
-}
 struct sway_moment {
     vec4 a;      // stiffness against turning: xx xy xz yy
     vec4 ag;     // yz zz; the own part of it, and 0
@@ -1251,6 +1244,13 @@ sway_state sway_turned(sway_joint joint, sway_gain gain, sway_state was, vec4 pa
     now.before = now.after;
     now.budget = -1.0f;
     return now;
+}
+sway_energy sway_settled(sway_energy tree, float budget) {
+    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
+    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
+    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
+    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
+    return tree;
 }
 layout(std430, binding = 0) readonly buffer joints_buffer { sway_joint joints[]; };
 layout(std430, binding = 1) readonly buffer states_buffer { sway_state states[]; };

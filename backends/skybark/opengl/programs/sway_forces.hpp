@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 eb6da4cdecf80947bb68d2974e41b6c2ee475c2e54f1787027916dc1226122b3
+// sha256 c4f2b8e89a6ca384c1294f76e57860212f0b6121d811e8b269b7c5e71012077f
 #pragma once
 
 #include <skybark/kernels/sway_forces.hpp>
@@ -507,13 +507,6 @@ sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.elastic = a.elastic + b.elastic;
     a.work = a.work + b.work;
     return a;
-}
-sway_energy sway_settled(sway_energy tree, float budget) {
-    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
-    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
-    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
-    return tree;
 }
 struct sway_moment {
     vec4 a;      // stiffness against turning: xx xy xz yy
@@ -1142,13 +1135,6 @@ sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.elastic = a.elastic + b.elastic;
     a.work = a.work + b.work;
     return a;
-}
-sway_energy sway_settled(sway_energy tree, float budget) {
-    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
-    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
-    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
-    return tree;
 }
 struct sway_moment {
     vec4 a;      // stiffness against turning: xx xy xz yy

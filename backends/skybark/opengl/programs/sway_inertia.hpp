@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d9732db1c1a64df1019f1966387472ca3bf7e19272060b3a80eca637c7d7e56f
+// sha256 c6d891fc4544af68cdeabc00a7a74ff336c108e01441412c685d8bf89119ad3d
 #pragma once
 
 #include <skybark/kernels/sway_inertia.hpp>
@@ -508,13 +508,6 @@ sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.elastic = a.elastic + b.elastic;
     a.work = a.work + b.work;
     return a;
-}
-sway_energy sway_settled(sway_energy tree, float budget) {
-    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
-    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
-    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
-    return tree;
 }
 struct sway_moment {
     vec4 a;      // stiffness against turning: xx xy xz yy
@@ -1149,13 +1142,6 @@ sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.elastic = a.elastic + b.elastic;
     a.work = a.work + b.work;
     return a;
-}
-sway_energy sway_settled(sway_energy tree, float budget) {
-    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
-    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
-    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
-    return tree;
 }
 struct sway_moment {
     vec4 a;      // stiffness against turning: xx xy xz yy

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 714aa78d1619093d60a33c46491466854f1321ed33ce2d28d17f1afdbbb8a3fb
+// sha256 0436ff52c6326a88a86e80b25e57aabf5510c8f8566c91571130b2641f36a7c0
 #pragma once
 
 #include <skybark/kernels/sway_moments.hpp>
@@ -507,13 +507,6 @@ sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.elastic = a.elastic + b.elastic;
     a.work = a.work + b.work;
     return a;
-}
-sway_energy sway_settled(sway_energy tree, float budget) {
-    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
-    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
-    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
-    return tree;
 }
 struct sway_moment {
     vec4 a;      // stiffness against turning: xx xy xz yy
@@ -1144,13 +1137,6 @@ sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
     a.elastic = a.elastic + b.elastic;
     a.work = a.work + b.work;
     return a;
-}
-sway_energy sway_settled(sway_energy tree, float budget) {
-    tree.budget = budget < 0.0f ? tree.before + tree.elastic : budget + tree.work;
-    float left = min(tree.before, max(tree.budget - tree.elastic, 0.0f));
-    bool moves = tree.before > 1e-30f && tree.after > 1e-30f;
-    tree.scale = moves ? sqrt(left / tree.after) : 1.0f;
-    return tree;
 }
 struct sway_moment {
     vec4 a;      // stiffness against turning: xx xy xz yy

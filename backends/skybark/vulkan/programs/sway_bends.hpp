@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b12e57efa5429d9ae20a49fe781b1a6eef5bad745b4dd044bedfbe274d096d2c
+// sha256 a82c6c7ec709012ba75a15385b459f5d7943442aeaf1448bb5f45eaaf1d913a5
 #pragma once
 
 #include <skybark/kernels/sway_bends.hpp>

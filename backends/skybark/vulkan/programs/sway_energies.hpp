@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f11f9cb8287086af3ff0c43d866d104be11459ea1cf278151e621eddbc1973c1
+// sha256 61c8f108fb2bd884433cbce281b322afab56f0a3ca49644609a60ee16bde6e3f
 #pragma once
 
 #include <skybark/kernels/sway_energies.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 9ae3fcf5d3e6e0a2f8874d1da4643e6b6d7ca699f02bb3aa24a03c72d1395f21
+// sha256 88cf88cd1732f6fd2404c7a2b9067138402cdaff55a8c0397971d4854d4ea159
 #pragma once
 
 #include <skybark/kernels/sway_forces.hpp>

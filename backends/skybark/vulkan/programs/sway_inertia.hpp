@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 31b7b68c900606f49ec39f8785c0739c6623b63189ae2e963514b2f54df74b6d
+// sha256 cffa7317309b892f4854bc0c7ee3d24b97f4ca65380c2431d7b6e4cfb417fad7
 #pragma once
 
 #include <skybark/kernels/sway_inertia.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 154b2c2330f4bd755291f7411d8326fcc61cf0678312b9cb7b80039c51c095cf
+// sha256 5f22d4a32248aab173efe91080dbb3dc3c3b159f8050e7bceded51aaf5154b4d
 #pragma once
 
 #include <skybark/kernels/sway_moments.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 82e3f0ddcd51ce9c5abebdbaca3b5dbd0519a9ce28b4db75e525795933b5d9fc
+// sha256 9bd4ed3b28917a4d111cb1cc7999aa7bb5bcc6da5912ad8edc7ffd3d790ded1a
 #pragma once
 
 #include <skybark/kernels/sway_motion.hpp>

@@ -1,0 +1,547 @@
+// clang-format off
+// Made by shaders/embed.py. Edit the text in shaders/ instead.
+// sha256 2db11fc410b7a5044076c07431ac28219a52d68c90937ba1d05fe58f69add6dd
+#pragma once
+
+#include <skybark/cpu/four.hpp>
+
+#if defined(__GNUC__)
+
+namespace skybark::cpu::four {
+
+// Branches that sway: rigid segments on springs, solved in two passes over the levels of the tree.
+//
+// A segment's motion is (turn, speed): its angular velocity, and the velocity of its base. All
+// vectors are in the world's axes and about the base of their own segment. Momentum about it is
+// (A turn + B speed, B^T turn + C speed), and the blocks A, B, C of a segment that carries others
+// on its joints follow from theirs: Featherstone, "Rigid Body Dynamics Algorithms" (2008), ch. 7.
+// How a step is cut so that energy never grows: docs/sway.md.
+
+// What never changes of a segment and of the joint at its base, at rest.
+struct sway_joint {
+    vec3 axis;        // unit, from base to tip
+    number extent;     // m, its length
+    vec3 offset;      // m, from the parent's base to this one's; 0 at a root
+    number stiffness;  // N m/rad, of the joint
+    vec3 base;        // m
+    number relaxation; // s, the joint's damping over its stiffness; the same all over a tree
+    number mass;       // kg
+    number lever;      // kg m, mass times the distance of its centre from the base
+    number across;     // kg m2, about the base, across the axis
+    number along;      // kg m2, about the axis
+    number parent;      // a root's is the ground: the record after the last
+    number first_child;
+    number child_count;
+    number root;        // of the tree
+};
+
+// Where a segment is and how it moves. `bend` and `rate` are in the parent's axes as they were at
+// rest and turn with the parent.
+struct sway_state {
+    vec4 rotation;    // from rest to now
+    vec3 bend;        // rad, from rest, a rotation vector
+    number before;     // J, its kinetic energy with these rates in the pose before this one
+    vec3 rate;        // rad/s, of the joint
+    number after;      // J, its kinetic energy with these rates in this pose
+    vec3 turn;        // rad/s
+    number budget;     // J, at a root: the most that its tree may have had before the step; or < 0
+    vec3 speed;       // m/s
+    number reserved0;
+    vec3 shift;       // m, how far its base is from where it rests
+    number reserved1;
+    vec3 step_turn;   // rad/s, mean over the step that led here
+    number reserved2;
+    vec3 step_speed;  // m/s, the same
+    number reserved3;
+};
+
+// Energies of a segment and all that it carries, J. At a root also what follows from them for its
+// tree: the scale of all rates that brings `after` back to `before`, and the energy that it may
+// have at most.
+struct sway_energy {
+    number before;
+    number after;
+    number elastic;
+    number work;   // of the loads, in this step
+    number scale;
+    number budget;
+    number reserved0;
+    number reserved1;
+};
+
+// Articulated inertia and momentum, as a segment hands them to its parent: rows of B with L, then
+// P, then the upper triangles of A and C.
+struct sway_carry {
+    vec4 b0;
+    vec4 b1;
+    vec4 b2;
+    vec4 p;
+    vec4 a;  // xx xy xz yy
+    vec4 ac; // A: yz zz; C: xx xy
+    vec4 c;  // xz yy yz zz
+};
+
+// How a joint answers to the motion of its parent: rate = free - give turn - pull speed.
+struct sway_gain {
+    vec4 b0; // rows of pull, and free
+    vec4 b1;
+    vec4 b2;
+    vec4 e;  // give: xx xy xz yy
+    vec4 er; // give: yz zz
+    vec4 r;  // m, from the parent's base to this one's
+};
+
+// How a joint is stepped.
+struct sway_rule {
+    number weight; // of the new rate in the mean over the step, 1/2 ... 1
+    number hold;   // kg m2, what its spring and damper add to the inertia
+    number spring; // N m s/rad, the impulse of its spring
+};
+
+struct sway_sym {
+    number xx;
+    number xy;
+    number xz;
+    number yy;
+    number yz;
+    number zz;
+};
+
+inline number sway_dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+inline vec3 sway_cross(vec3 a, vec3 b) {
+    return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+
+inline vec3 sway_times(sway_sym m, vec3 v) {
+    return vec3(m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
+                m.xz * v.x + m.yz * v.y + m.zz * v.z);
+}
+
+// The inverse of a matrix whose eigenvalues are `least` or more, by its factors L D L^T: rounding
+// cannot make it lose that, as it would with cofactors.
+inline sway_sym sway_inverse(sway_sym m, number least) {
+    number d0 = 1.0f / max(m.xx, least);
+    number l1 = m.xy * d0;
+    number l2 = m.xz * d0;
+    number d1 = 1.0f / max(m.yy - l1 * m.xy, least);
+    number t = m.yz - l1 * m.xz;
+    number l3 = t * d1;
+    number d2 = 1.0f / max(m.zz - l2 * m.xz - l3 * t, least);
+    number k2 = l1 * l3 - l2;
+    sway_sym y;
+    y.zz = d2;
+    y.yz = -l3 * d2;
+    y.xz = k2 * d2;
+    y.yy = d1 + l3 * l3 * d2;
+    y.xy = -l1 * d1 - l3 * y.xz;
+    y.xx = d0 + l1 * l1 * d1 + k2 * y.xz;
+    return y;
+}
+
+// The upper triangle of the product of two symmetric matrices that commute.
+inline sway_sym sway_product(sway_sym a, sway_sym b) {
+    sway_sym m;
+    m.xx = a.xx * b.xx + a.xy * b.xy + a.xz * b.xz;
+    m.xy = a.xx * b.xy + a.xy * b.yy + a.xz * b.yz;
+    m.xz = a.xx * b.xz + a.xy * b.yz + a.xz * b.zz;
+    m.yy = a.xy * b.xy + a.yy * b.yy + a.yz * b.yz;
+    m.yz = a.xy * b.xz + a.yy * b.yz + a.yz * b.zz;
+    m.zz = a.xz * b.xz + a.yz * b.yz + a.zz * b.zz;
+    return m;
+}
+
+// sin x / x from the square of x, up to x = pi / 2.
+inline number sway_sinc(number s) {
+    return 1.0f + s * (-0.1666666664f +
+                       s * (0.0083333315f +
+                            s * (-0.0001984090f + s * (0.0000027526f + s * -0.0000000239f))));
+}
+
+// The rotation by a rotation vector of any length.
+inline vec4 sway_rotation(vec3 bend) {
+    number square = sway_dot(bend, bend);
+    number angle = sqrt(square);
+    number turns = floor(angle * 0.15915494f + 0.5f);
+    // Exactly the angle up to half a turn. Where it is so long that rounding is turns, any will do.
+    number left = min(max(angle - 6.2831853f * turns, -3.1415927f), 3.1415927f);
+    // Up to 1 rad the angle is what is kept of itself, without a division by nothing.
+    number kept = (left + max(1.0f - angle, 0.0f)) / max(angle, 1.0f);
+    square = left * left;
+    number s = sway_sinc(0.25f * square);
+    number c = sway_sinc(0.0625f * square);
+    number by = 0.5f * s * kept;
+    return vec4(by * bend.x, by * bend.y, by * bend.z, 1.0f - 0.125f * square * (c * c));
+}
+
+// A joint's rotation after its parent's, kept a unit quaternion along the longest branch.
+inline vec4 sway_rotated(vec4 parent, vec3 bend) {
+    vec4 q = quaternion_times(parent, sway_rotation(bend));
+    number n = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+    return q * (1.5f - 0.5f * n);
+}
+
+inline vec3 sway_back(vec4 q, vec3 v) { return quaternion_rotate(vec4(-q.x, -q.y, -q.z, q.w), v); }
+
+inline sway_rule sway_rule_of(sway_joint joint, number seconds) {
+    // Damping goes half into the mean's weight and half into the joint, as far as the weight goes.
+    number share = min(joint.relaxation / seconds, 1.0f);
+    number rest = joint.relaxation - 0.5f * share * seconds;
+    sway_rule rule;
+    rule.weight = 0.5f + 0.5f * share;
+    rule.spring = rule.weight * seconds * joint.stiffness;
+    rule.hold = rule.spring * (0.5f * seconds + rest);
+    return rule;
+}
+
+inline number sway_kinetic(sway_joint joint, vec3 axis, vec3 turn, vec3 speed) {
+    number spin = sway_dot(axis, turn);
+    return 0.5f * (joint.across * sway_dot(turn, turn) +
+                   (joint.along - joint.across) * (spin * spin) +
+                   joint.mass * sway_dot(speed, speed)) +
+           joint.lever * sway_dot(sway_cross(turn, axis), speed);
+}
+
+// Inertia and momentum of a segment alone, with the impulse of its load.
+inline sway_carry sway_body(sway_joint joint, sway_state state, segment_load load, sway_rule rule,
+                     number scale, number seconds) {
+    vec3 axis = quaternion_rotate(state.rotation, joint.axis);
+    vec3 turn = state.turn * scale;
+    vec3 speed = state.speed * scale;
+    vec3 middle = axis * (0.5f * joint.extent);
+    number share = rule.weight * seconds;
+    number drag = share * load.drag;
+    vec3 push = load.force * share;
+
+    vec3 lever = axis * joint.lever;
+    vec3 momentum = speed * joint.mass + sway_cross(turn, lever);
+    vec3 spin = turn * joint.across +
+                axis * ((joint.along - joint.across) * sway_dot(axis, turn)) +
+                sway_cross(lever, speed) + sway_cross(middle, push);
+
+    number reach = drag * (0.25f * joint.extent * joint.extent);
+    number across = joint.across + reach;
+    number excess = joint.along - across;
+    vec3 g = lever + middle * drag;
+    number mass = joint.mass + drag;
+    vec3 e = axis * excess;
+
+    sway_carry c;
+    c.b0 = vec4(0.0f, -g.z, g.y, spin.x);
+    c.b1 = vec4(g.z, 0.0f, -g.x, spin.y);
+    c.b2 = vec4(-g.y, g.x, 0.0f, spin.z);
+    c.p = vec4(momentum + push, 0.0f);
+    c.a = vec4(across + e.x * axis.x, e.x * axis.y, e.x * axis.z, across + e.y * axis.y);
+    c.ac = vec4(e.y * axis.z, across + e.z * axis.z, mass, 0.0f);
+    c.c = vec4(0.0f, mass, 0.0f, mass);
+    return c;
+}
+
+inline sway_carry sway_sum(sway_carry a, sway_carry b) {
+    a.b0 = a.b0 + b.b0;
+    a.b1 = a.b1 + b.b1;
+    a.b2 = a.b2 + b.b2;
+    a.p = a.p + b.p;
+    a.a = a.a + b.a;
+    a.ac = a.ac + b.ac;
+    a.c = a.c + b.c;
+    return a;
+}
+
+struct sway_parted {
+    sway_carry carry;
+    sway_gain gain;
+};
+
+// Takes the joint out of what segment and children are together: what is left of them as their
+// parent feels it, about the parent's base, and how the joint will answer.
+inline sway_parted sway_part(sway_joint joint, sway_carry sum, sway_rule rule, vec4 rotation, vec3 bend,
+                      vec4 parent_rotation) {
+    vec3 r = quaternion_rotate(parent_rotation, joint.offset);
+    vec3 b0 = vec3(sum.b0.x, sum.b0.y, sum.b0.z);
+    vec3 b1 = vec3(sum.b1.x, sum.b1.y, sum.b1.z);
+    vec3 b2 = vec3(sum.b2.x, sum.b2.y, sum.b2.z);
+    vec3 spin = vec3(sum.b0.w, sum.b1.w, sum.b2.w);
+    vec3 momentum = vec3(sum.p.x, sum.p.y, sum.p.z);
+
+    sway_sym a;
+    a.xx = sum.a.x;
+    a.xy = sum.a.y;
+    a.xz = sum.a.z;
+    a.yy = sum.a.w;
+    a.yz = sum.ac.x;
+    a.zz = sum.ac.y;
+    sway_sym d = a;
+    d.xx = a.xx + rule.hold;
+    d.yy = a.yy + rule.hold;
+    d.zz = a.zz + rule.hold;
+    // Layouts keep every inertia above 5e-5 of what it carries: less than these is rounding.
+    sway_sym y = sway_inverse(d, rule.hold + 4e-6f * (a.xx + a.yy + a.zz));
+    // Of y a = 1 - hold y the product loses nothing where the hold is large or small.
+    sway_sym give = sway_product(y, a);
+
+    // The bend turns about itself, so its axis in the world is that of either side of the joint.
+    vec3 torque = spin - quaternion_rotate(rotation, bend) * rule.spring;
+    vec3 free = sway_times(y, torque);
+    vec3 y0 = b0 * y.xx + b1 * y.xy + b2 * y.xz;
+    vec3 y1 = b0 * y.xy + b1 * y.yy + b2 * y.yz;
+    vec3 y2 = b0 * y.xz + b1 * y.yz + b2 * y.zz;
+
+    vec3 spin_left = spin - sway_times(give, torque);
+    vec3 left = momentum - (b0 * free.x + b1 * free.y + b2 * free.z);
+    vec3 c0 = vec3(sum.ac.z, sum.ac.w, sum.c.x) - (y0 * b0.x + y1 * b1.x + y2 * b2.x);
+    number least = 4e-6f * (sum.ac.z + sum.c.y + sum.c.w);
+    number cxx = max(c0.x, least);
+    number cyy = max(sum.c.y - (b0.y * y0.y + b1.y * y1.y + b2.y * y2.y), least);
+    number cyz = sum.c.z - (b0.y * y0.z + b1.y * y1.z + b2.y * y2.z);
+    number czz = max(sum.c.w - (b0.z * y0.z + b1.z * y1.z + b2.z * y2.z), least);
+    c0.x = cxx;
+    vec3 c1 = vec3(c0.y, cyy, cyz);
+    vec3 c2 = vec3(c0.z, cyz, czz);
+
+    // About the parent's base: B' = B + [r] C and A' = A + [r] B^T + B' [r]^T.
+    vec3 h0 = y0 * rule.hold;
+    vec3 h1 = y1 * rule.hold;
+    vec3 h2 = y2 * rule.hold;
+    vec3 n0 = h0 + (c2 * r.y - c1 * r.z);
+    vec3 n1 = h1 + (c0 * r.z - c2 * r.x);
+    vec3 n2 = h2 + (c1 * r.x - c0 * r.y);
+    vec3 s0 = sway_cross(r, h0);
+    vec3 s1 = sway_cross(r, h1);
+    vec3 s2 = sway_cross(r, h2);
+    vec3 t0 = sway_cross(r, n0);
+    vec3 t1 = sway_cross(r, n1);
+    vec3 t2 = sway_cross(r, n2);
+    spin_left = spin_left + sway_cross(r, left);
+
+    sway_parted parted;
+    parted.carry.b0 = vec4(n0, spin_left.x);
+    parted.carry.b1 = vec4(n1, spin_left.y);
+    parted.carry.b2 = vec4(n2, spin_left.z);
+    parted.carry.p = vec4(left, 0.0f);
+    parted.carry.a = vec4(rule.hold * give.xx + (s0.x + t0.x), rule.hold * give.xy + (s1.x + t0.y),
+                          rule.hold * give.xz + (s2.x + t0.z), rule.hold * give.yy + (s1.y + t1.y));
+    parted.carry.ac = vec4(rule.hold * give.yz + (s2.y + t1.z),
+                           rule.hold * give.zz + (s2.z + t2.z), c0.x, c0.y);
+    parted.carry.c = vec4(c0.z, cyy, cyz, czz);
+    parted.gain.b0 = vec4(y0, free.x);
+    parted.gain.b1 = vec4(y1, free.y);
+    parted.gain.b2 = vec4(y2, free.z);
+    parted.gain.e = vec4(give.xx, give.xy, give.xz, give.yy);
+    parted.gain.er = vec4(give.yz, give.zz, 0.0f, 0.0f);
+    parted.gain.r = vec4(r, 0.0f);
+    return parted;
+}
+
+// Puts a segment where its bend and its parent say, and moves it with its rate. Nothing else of
+// `now` is read.
+inline sway_state sway_placed(sway_joint joint, sway_state parent, sway_state now) {
+    vec3 moved = quaternion_move(parent.rotation, joint.offset);
+    now.rotation = sway_rotated(parent.rotation, now.bend);
+    now.shift = parent.shift + moved;
+    now.turn = parent.turn + quaternion_rotate(parent.rotation, now.rate);
+    now.speed = parent.speed + sway_cross(parent.turn, joint.offset + moved);
+    return now;
+}
+
+// One step of a joint whose parent has made its own. `was` and `parent_was` are before the step.
+inline sway_state sway_stepped(sway_joint joint, sway_gain gain, sway_state was, vec4 parent_was,
+                        sway_state parent, sway_rule rule, sway_energy tree, number seconds) {
+    sway_sym give;
+    give.xx = gain.e.x;
+    give.xy = gain.e.y;
+    give.xz = gain.e.z;
+    give.yy = gain.e.w;
+    give.yz = gain.er.x;
+    give.zz = gain.er.y;
+    vec3 r = vec3(gain.r.x, gain.r.y, gain.r.z);
+    vec3 speed = parent.step_speed + sway_cross(parent.step_turn, r);
+    vec3 given = sway_times(give, parent.step_turn);
+    vec3 rate = vec3(
+        gain.b0.w - given.x - (gain.b0.x * speed.x + gain.b0.y * speed.y + gain.b0.z * speed.z),
+        gain.b1.w - given.y - (gain.b1.x * speed.x + gain.b1.y * speed.y + gain.b1.z * speed.z),
+        gain.b2.w - given.z - (gain.b2.x * speed.x + gain.b2.y * speed.y + gain.b2.z * speed.z));
+    vec3 turn = parent.step_turn + rate;
+
+    // From the mean over the step to its end.
+    number ahead = 1.0f / rule.weight;
+    vec3 mean = sway_back(parent_was, rate);
+    vec3 old_rate = was.rate * tree.scale;
+    vec3 old_turn = was.turn * tree.scale;
+    vec3 old_speed = was.speed * tree.scale;
+    sway_state now = was;
+    now.budget = tree.budget;
+    now.bend = was.bend + mean * seconds;
+    now.rate = old_rate + (mean - old_rate) * ahead;
+    now.step_turn = turn;
+    now.step_speed = speed;
+    vec3 axis_was = quaternion_rotate(was.rotation, joint.axis);
+    now.before = sway_kinetic(joint, axis_was, old_turn + (turn - old_turn) * ahead,
+                              old_speed + (speed - old_speed) * ahead);
+    now = sway_placed(joint, parent, now);
+    now.after = sway_kinetic(joint, quaternion_rotate(now.rotation, joint.axis), now.turn,
+                             now.speed);
+    return now;
+}
+
+inline segment_pose sway_pose(sway_joint joint, sway_state state) {
+    segment_pose pose;
+    pose.rotation = state.rotation;
+    pose.base = joint.base;
+    pose.reserved0 = 0.0f;
+    pose.shift = state.shift;
+    pose.reserved1 = 0.0f;
+    return pose;
+}
+
+// The velocity of a segment's middle over the step that led from `was` to `now`.
+inline vec4 sway_velocity(sway_joint joint, vec4 was, sway_state now) {
+    vec3 middle = quaternion_rotate(was, joint.axis) * (0.5f * joint.extent);
+    return vec4(now.step_speed + sway_cross(now.step_turn, middle), 0.0f);
+}
+
+// `velocity`: of the middle, over the step.
+inline sway_energy sway_energy_of(sway_joint joint, sway_state state, segment_load load, vec4 velocity,
+                           number seconds) {
+    sway_energy own;
+    own.before = state.before;
+    own.after = state.after;
+    own.elastic = 0.5f * joint.stiffness * sway_dot(state.bend, state.bend);
+    own.work = seconds * (load.force.x * velocity.x + load.force.y * velocity.y +
+                          load.force.z * velocity.z);
+    own.scale = 1.0f;
+    own.budget = 0.0f;
+    own.reserved0 = 0.0f;
+    own.reserved1 = 0.0f;
+    return own;
+}
+
+inline sway_energy sway_energy_sum(sway_energy a, sway_energy b) {
+    a.before = a.before + b.before;
+    a.after = a.after + b.after;
+    a.elastic = a.elastic + b.elastic;
+    a.work = a.work + b.work;
+    return a;
+}
+
+// Static equilibrium: what a segment hands to its parent, about the parent's base.
+struct sway_moment {
+    vec4 a;      // stiffness against turning: xx xy xz yy
+    vec4 ag;     // yz zz; the own part of it, and 0
+    vec4 force;  // N
+    vec4 moment; // N m
+};
+
+inline sway_moment sway_moment_sum(sway_moment a, sway_moment b) {
+    a.a = a.a + b.a;
+    a.ag = a.ag + b.ag;
+    a.force = a.force + b.force;
+    a.moment = a.moment + b.moment;
+    return a;
+}
+
+// How much a force that pulls at the end of a lever holds it back, N m/rad. A lever that turns
+// under a force f loses f . r of its moment; half of |f| |r| at least keeps Newton's method from
+// overshooting while it is still far off, and changes nothing of where it ends.
+inline number sway_hold(vec3 force, vec3 r) {
+    number least = 0.5f * sqrt(sway_dot(force, force) * sway_dot(r, r));
+    return max(sway_dot(force, r), least);
+}
+
+// The load of a segment alone.
+inline sway_moment sway_pull(sway_joint joint, vec4 rotation, segment_load load) {
+    vec3 middle = quaternion_rotate(rotation, joint.axis) * (0.5f * joint.extent);
+    sway_moment m;
+    m.a = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    m.ag = vec4(0.0f, 0.0f, sway_hold(load.force, middle), 0.0f);
+    m.force = vec4(load.force, 0.0f);
+    m.moment = vec4(sway_cross(middle, load.force), 0.0f);
+    return m;
+}
+
+struct sway_balanced {
+    sway_moment carry;
+    sway_gain gain;
+};
+
+// One step of Newton's method at a joint, of sway_part's form: A is the stiffness that the forces
+// give to the segments' turns, the joint's own stiffness stands for the hold.
+inline sway_balanced sway_balance(sway_joint joint, sway_moment sum, vec4 rotation, vec3 bend,
+                           vec4 parent_rotation) {
+    vec3 r = quaternion_rotate(parent_rotation, joint.offset);
+    vec3 moment = vec3(sum.moment.x, sum.moment.y, sum.moment.z);
+    vec3 force = vec3(sum.force.x, sum.force.y, sum.force.z);
+    sway_sym a;
+    a.xx = sum.a.x + sum.ag.z;
+    a.xy = sum.a.y;
+    a.xz = sum.a.z;
+    a.yy = sum.a.w + sum.ag.z;
+    a.yz = sum.ag.x;
+    a.zz = sum.ag.y + sum.ag.z;
+    sway_sym d = a;
+    d.xx = a.xx + joint.stiffness;
+    d.yy = a.yy + joint.stiffness;
+    d.zz = a.zz + joint.stiffness;
+    sway_sym y = sway_inverse(d, joint.stiffness);
+    sway_sym give = sway_product(y, a);
+    vec3 torque = moment - quaternion_rotate(rotation, bend) * joint.stiffness;
+    vec3 free = sway_times(y, torque);
+    vec3 left = moment - sway_times(give, torque) + sway_cross(r, force);
+
+    number k = joint.stiffness;
+    sway_balanced b;
+    b.carry.a = vec4(k * give.xx, k * give.xy, k * give.xz, k * give.yy);
+    b.carry.ag = vec4(k * give.yz, k * give.zz, sway_hold(force, r), 0.0f);
+    b.carry.force = sum.force;
+    b.carry.moment = vec4(left, 0.0f);
+    b.gain.b0 = vec4(0.0f, 0.0f, 0.0f, free.x);
+    b.gain.b1 = vec4(0.0f, 0.0f, 0.0f, free.y);
+    b.gain.b2 = vec4(0.0f, 0.0f, 0.0f, free.z);
+    b.gain.e = vec4(give.xx, give.xy, give.xz, give.yy);
+    b.gain.er = vec4(give.yz, give.zz, 0.0f, 0.0f);
+    b.gain.r = vec4(r, 0.0f);
+    return b;
+}
+
+// The paper's turn: the part of the summed force across the segment, on a lever as long as the
+// segment. As a gain whose joint turns by it whatever its parent does.
+inline sway_gain sway_paper_gain(sway_joint joint, vec3 force, vec4 rotation, vec3 bend) {
+    vec3 axis = quaternion_rotate(rotation, joint.axis);
+    vec3 turn = sway_cross(axis, force) * (joint.extent / joint.stiffness);
+    vec3 free = turn - quaternion_rotate(rotation, bend);
+    sway_gain g;
+    g.b0 = vec4(0.0f, 0.0f, 0.0f, free.x);
+    g.b1 = vec4(0.0f, 0.0f, 0.0f, free.y);
+    g.b2 = vec4(0.0f, 0.0f, 0.0f, free.z);
+    g.e = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    g.er = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    g.r = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    return g;
+}
+
+// Turns a joint by a gain, without inertia. `step_turn` is by how much its parent has turned.
+inline sway_state sway_turned(sway_joint joint, sway_gain gain, sway_state was, vec4 parent_was,
+                       sway_state parent) {
+    sway_sym give;
+    give.xx = gain.e.x;
+    give.xy = gain.e.y;
+    give.xz = gain.e.z;
+    give.yy = gain.e.w;
+    give.yz = gain.er.x;
+    give.zz = gain.er.y;
+    vec3 turn = vec3(gain.b0.w, gain.b1.w, gain.b2.w) - sway_times(give, parent.step_turn);
+    sway_state now = was;
+    now.bend = was.bend + sway_back(parent_was, turn);
+    now.step_turn = parent.step_turn + turn;
+    now.step_speed = vec3(0.0f, 0.0f, 0.0f);
+    now = sway_placed(joint, parent, now);
+    now.after = sway_kinetic(joint, quaternion_rotate(now.rotation, joint.axis), now.turn,
+                             now.speed);
+    now.before = now.after;
+    now.budget = -1.0f;
+    return now;
+}
+
+} // namespace skybark::cpu::four
+
+#endif
