@@ -1,12 +1,14 @@
 // Closed meshes: one surface a tree without border or handles, at rest and in any pose, on every
 // backend; and whether the check of that sees what is wrong.
 
+#include "support/allocations.hpp"
 #include "support/closed_surface.hpp"
 #include "support/devices.hpp"
 #include "support/forward_kinematics.hpp"
 #include "support/surface_topology.hpp"
 #include "support/test_trees.hpp"
 
+#include <skybark/core/validated.hpp>
 #include <skybark/trees/closed_mesh.hpp>
 
 #include <gtest/gtest.h>
@@ -366,6 +368,38 @@ TEST(closed_mesh, parts_close_together) {
     const auto none = trees::closed_mesh<cpu::device>::create(tiny, tree.skeleton, {});
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().code, error_code::out_of_memory);
+}
+
+// A frame sends nothing, asks for no memory and keeps to the contract of every pattern.
+TEST(closed_mesh, steady_frames_cost_no_more_than_their_work) {
+    using checked = validated<cpu::device>;
+    cpu::device inner;
+    std::vector<std::string> misuse;
+    checked device(inner, [&](std::string_view sentence) { misuse.emplace_back(sentence); });
+    const auto tree = of(support::scanned_tree());
+    const auto mesh = made(device, tree.skeleton, with(8, 4));
+    const auto poses = support::random_poses(tree.skeleton, 0.1, 3);
+    const auto buffer = make_buffer<checked, segment_pose>(device, poses);
+    ASSERT_TRUE(buffer);
+    const device_traffic before = device.traffic();
+    ASSERT_TRUE(run(device, [&](auto& r) { mesh.record(r, view<checked>(*buffer)); }));
+    EXPECT_EQ(device.traffic().up, before.up);
+    EXPECT_EQ(device.traffic().down, before.down);
+    EXPECT_TRUE(misuse.empty()) << misuse.front();
+
+    const auto plain = made(inner, tree.skeleton, with(8, 4));
+    const auto plain_buffer = make_buffer<cpu::device, segment_pose>(inner, poses);
+    ASSERT_TRUE(plain_buffer);
+    std::uint64_t allocations[2] = {0, 0};
+    for (std::uint64_t& count : allocations) {
+        auto recorder = inner.begin();
+        ASSERT_TRUE(recorder);
+        const std::uint64_t so_far = support::allocations;
+        plain.record(*recorder, view<cpu::device>(*plain_buffer));
+        count = support::allocations - so_far;
+        ASSERT_TRUE(inner.submit(*recorder));
+    }
+    EXPECT_EQ(allocations[1], 0u);
 }
 
 TEST(closed_mesh, refuses_what_it_cannot_make) {
