@@ -1,8 +1,9 @@
 #pragma once
-// read_image: the heights of a bark texture from a picture file.
+// read_image, read_leaf: the heights of a bark texture, or a leaf, from a picture file.
 
 #include <skybark/core/result.hpp>
 #include <skybark/trees/bark_texture.hpp>
+#include <skybark/trees/leaf_texture.hpp>
 
 #include <string>
 
@@ -13,5 +14,9 @@ namespace skybark::io {
 /// v = 0. Errors: unavailable where the file can't be opened; bad_input where it is no such
 /// picture, ends early, has no pixels or a side of more than 16384.
 [[nodiscard]] result<trees::bark_texture> read_image(const std::string& path);
+
+/// Reads a leaf that stands on its stalk, as people look at leaves: sRGB, with what isn't leaf
+/// transparent. Row 0 of the result is the picture's bottom one. Errors as above.
+[[nodiscard]] result<trees::leaf_picture> read_leaf(const std::string& path);
 
 } // namespace skybark::io

@@ -197,7 +197,13 @@ result<void> compress(const std::string& path, bytes& rows, bytes& to) {
         return fail(error_code::out_of_memory,
                     "There is not enough memory to compress " + in_quotes(path) + ".");
     }
-    to.insert(to.end(), made.get(), made.get() + size);
+    if (size < 0) {
+        return fail(error_code::out_of_memory, in_quotes(path) + " would be too large.");
+    }
+    to.reserve(to.size() + static_cast<std::size_t>(size));
+    for (int i = 0; i < size; ++i) { // in place of insert, where g++ 12 sees an overflow
+        to.push_back(made.get()[i]);
+    }
     return {};
 }
 

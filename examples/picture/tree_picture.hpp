@@ -2,12 +2,16 @@
 // A picture of a tree: on a meadow, in the sun, with its shadow, under a clear sky.
 
 #include <picture/daylight.hpp>
+#include <skybark/core/backend.hpp>
+#include <skybark/kernels/cast_leaf_shadow.hpp>
 #include <skybark/kernels/cast_shadow.hpp>
 #include <skybark/kernels/clear_sky.hpp>
 #include <skybark/kernels/develop.hpp>
+#include <skybark/kernels/lit_bark.hpp>
 #include <skybark/kernels/lit_branch.hpp>
+#include <skybark/kernels/lit_leaf.hpp>
 #include <skybark/kernels/meadow_ground.hpp>
-#include <skybark/trees/branch_mesh.hpp>
+#include <skybark/trees/view_detail.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +32,7 @@ struct picture_options {
 };
 
 inline constexpr std::uint32_t shadow_texels = 4096;
+inline constexpr float field = 0.5934119f; ///< rad, vertical: 34 degrees
 
 /// The scene around a tree that fills the box from `low` to `high`.
 [[nodiscard]] inline kernels::scene_record scene_around(glm::vec3 low, glm::vec3 high,
@@ -38,7 +43,6 @@ inline constexpr std::uint32_t shadow_texels = 4096;
     const float across = std::max({half.x, half.z, 0.01f});
     const float tall = std::max(half.y, 0.01f);
     const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
-    const float field = glm::radians(34.0f); // vertical
     const float reach = std::max(tall, across / aspect) * 1.12f;
     const float distance = reach / std::tan(field * 0.5f) + across;
     const glm::vec3 eye =
@@ -66,76 +70,204 @@ inline constexpr std::uint32_t shadow_texels = 4096;
     return scene;
 }
 
-/// Draws the branches of `mesh`, whose vertices have been made, into RGBA8 rows from the top.
-/// The tree stands on the ground at y = 0, or at the bottom of its box if that is higher.
-template <backend B>
-[[nodiscard]] result<std::vector<std::uint8_t>>
-draw_tree(B& device, const trees::branch_mesh<B>& mesh, glm::vec3 low, glm::vec3 high,
-          const picture_options& options) {
-    const float ground = std::clamp(0.0f, low.y, high.y);
+/// Level of detail for a picture of what fills the box from `low` to `high`.
+[[nodiscard]] inline trees::view_detail view_of(glm::vec3 low, glm::vec3 high,
+                                                const picture_options& options) {
     const kernels::scene_record scene =
-        scene_around(glm::vec3(low.x, ground, low.z), high, options);
-    auto scene_buffer = make_buffer<B, kernels::scene_record>(device, std::span(&scene, 1));
-    if (!scene_buffer) {
-        return failure(scene_buffer.error());
-    }
-    const std::uint32_t samples = std::max(1u, options.supersampling);
-    const std::uint32_t width = options.width * samples;
-    const std::uint32_t height = options.height * samples;
-    const image_description wanted[4] = {{width, height, image_format::rgba32f},
-                                         {width, height, image_format::depth32f},
-                                         {shadow_texels, shadow_texels, image_format::depth32f},
-                                         {options.width, options.height, image_format::rgba8}};
-    std::vector<typename B::image> images;
-    for (const image_description& what : wanted) {
-        auto made = device.create_image(what);
-        if (!made) {
-            return failure(made.error());
-        }
-        images.push_back(std::move(*made));
-    }
-    const auto& color = images[0];
-    const auto& depth = images[1];
-    const auto& shadow = images[2];
-    const auto& developed = images[3];
+        scene_around(glm::vec3(low.x, std::clamp(0.0f, low.y, high.y), low.z), high, options);
+    trees::view_detail view;
+    view.camera = glm::vec3(scene.camera);
+    view.pixels_per_radian = static_cast<float>(options.height) / (2 * std::tan(field / 2));
+    return view;
+}
 
-    const buffer_view<B> scene_view = view<B>(*scene_buffer);
-    const sampled_image<B> shadow_map{&shadow, filter_mode::nearest, wrap_mode::clamp};
-    const auto drawn = run(device, [&](typename B::recorder& r) {
-        draw_target<B> from_sun{nullptr, &shadow, {}, 1.0f};
-        for (const auto& part : mesh.parts()) {
-            r.draw(kernels::cast_shadow{}, {view<B>(part.vertices), scene_view}, {},
-                   mesh.geometry(part), from_sun, draw_state{});
-            from_sun.clear_depth.reset();
+/// How something looks.
+enum class look {
+    plain, ///< one colour: the skeleton's sticks
+    bark,  ///< by the painter's bark map
+    leaf,  ///< cut out of the painter's leaf picture
+};
+
+/// Something to draw: vertices that have been made, and which of them.
+template <backend B>
+struct drawable {
+    buffer_view<B> vertices;
+    draw_geometry<B> geometry;
+    look as = look::bark;
+};
+
+/// Pictures as they are laid over surfaces: RGBA, 4 bytes a texel.
+struct surface_maps {
+    std::uint32_t bark_width = 0;
+    std::uint32_t bark_height = 0;
+    std::vector<std::uint8_t> bark;             ///< trees::normal_map
+    float bark_around = 2;                      ///< repeats, once around a branch
+    float bark_along = 1.4f;                    ///< repeats a metre
+    glm::vec3 bark_low{0.055f, 0.042f, 0.032f}; ///< albedo in the furrows
+    glm::vec3 bark_high{0.31f, 0.255f, 0.205f}; ///< albedo on the ridges
+    std::uint32_t leaf_width = 0;
+    std::uint32_t leaf_height = 0;
+    std::vector<std::uint8_t> leaf; ///< sRGB and coverage, first row at the stalk
+};
+
+/// Draws trees on a meadow, in the sun, with their shadows, under a clear sky: picture after
+/// picture, into images that it makes once.
+template <backend B>
+class tree_painter {
+  public:
+    [[nodiscard]] static result<tree_painter> create(B& device, const picture_options& options,
+                                                     const surface_maps& maps) {
+        tree_painter made(options, maps);
+        const std::uint32_t samples = std::max(1u, options.supersampling);
+        const std::uint32_t width = options.width * samples;
+        const std::uint32_t height = options.height * samples;
+        const image_description wanted[] = {
+            {width, height, image_format::rgba32f},
+            {width, height, image_format::depth32f},
+            {shadow_texels, shadow_texels, image_format::depth32f},
+            {options.width, options.height, image_format::rgba8},
+            {std::max(1u, maps.bark_width), std::max(1u, maps.bark_height), image_format::rgba8},
+            {std::max(1u, maps.leaf_width), std::max(1u, maps.leaf_height), image_format::rgba8}};
+        for (const image_description& what : wanted) {
+            auto image = device.create_image(what);
+            if (!image) {
+                return failure(image.error());
+            }
+            made.images_.push_back(std::move(*image));
         }
-        draw_target<B> picture{&color, &depth, glm::vec4(0), 1.0f};
-        const kernels::lit_branch wood{3.0f, options.skeleton ? 1u : 0u};
-        for (const auto& part : mesh.parts()) {
-            r.draw(wood, {view<B>(part.vertices), scene_view}, {shadow_map}, mesh.geometry(part),
-                   picture, draw_state{});
+        // Without a map: a flat one. Without a leaf's picture: a green that covers all.
+        const std::vector<std::uint8_t> flat{128, 128, 255, 128};
+        const std::vector<std::uint8_t> green{90, 130, 60, 255};
+        const auto& bark = maps.bark.empty() ? flat : maps.bark;
+        const auto& leaf = maps.leaf.empty() ? green : maps.leaf;
+        if (auto done = device.upload(made.images_[4], std::as_bytes(std::span(bark))); !done) {
+            return failure(done.error());
+        }
+        if (auto done = device.upload(made.images_[5], std::as_bytes(std::span(leaf))); !done) {
+            return failure(done.error());
+        }
+        auto scene = device.create_buffer(sizeof(kernels::scene_record));
+        if (!scene) {
+            return failure(scene.error());
+        }
+        made.scene_ = std::move(*scene);
+        return made;
+    }
+
+    /// Appends the drawing of a picture: the scene, what stands in it, and the ground's height and
+    /// extent in m.
+    void record(typename B::recorder& to, const kernels::scene_record& scene,
+                std::span<const drawable<B>> all, float ground, float extent) const {
+        to.upload(view<B>(*scene_), std::as_bytes(std::span(&scene, 1)));
+        cast_shadows(to, all);
+        draw_target<B> picture{&images_[0], &images_[1], glm::vec4(0), 1.0f};
+        for (const drawable<B>& one : all) {
+            draw_surface(to, one, picture);
             picture.clear_color.reset();
             picture.clear_depth.reset();
         }
         draw_geometry<B> plane;
         plane.count = 6;
-        const float extent = 400 * (high.y - low.y);
-        r.draw(kernels::meadow_ground{ground, extent}, {scene_view}, {shadow_map}, plane, picture,
-               draw_state{});
+        to.draw(kernels::meadow_ground{ground, extent}, {view<B>(*scene_)}, {shadow_map()}, plane,
+                picture, draw_state{});
+        picture.clear_color.reset();
+        picture.clear_depth.reset();
         draw_geometry<B> screen;
         screen.count = 3;
-        r.draw(kernels::clear_sky{}, {scene_view}, {}, screen, picture, draw_state{});
-        r.draw(kernels::develop{samples, options.exposure}, {},
-               {sampled_image<B>{&color, filter_mode::nearest, wrap_mode::clamp}}, screen,
-               draw_target<B>{&developed, nullptr, {}, {}}, draw_state{false, false});
-    });
-    if (!drawn) {
+        to.draw(kernels::clear_sky{}, {view<B>(*scene_)}, {}, screen, picture, draw_state{});
+        const std::uint32_t samples = std::max(1u, options_.supersampling);
+        to.draw(kernels::develop{samples, options_.exposure}, {},
+                {sampled_image<B>{&images_[0], filter_mode::nearest, wrap_mode::clamp}}, screen,
+                draw_target<B>{&images_[3], nullptr, {}, {}}, draw_state{false, false});
+    }
+
+    /// The picture: RGBA8 rows from the top.
+    [[nodiscard]] result<std::vector<std::uint8_t>> download(B& device) const {
+        std::vector<std::uint8_t> pixels(std::size_t{4} * options_.width * options_.height);
+        if (auto done = device.download(images_[3], std::as_writable_bytes(std::span(pixels)));
+            !done) {
+            return failure(done.error());
+        }
+        return pixels;
+    }
+
+    [[nodiscard]] const picture_options& options() const { return options_; }
+
+  private:
+    tree_painter(const picture_options& options, const surface_maps& maps)
+        : options_(options), wood_{glm::vec4(maps.bark_low, 0), glm::vec4(maps.bark_high, 0),
+                                   maps.bark_around, maps.bark_along, 1} {}
+
+    [[nodiscard]] sampled_image<B> shadow_map() const {
+        return {&images_[2], filter_mode::nearest, wrap_mode::clamp};
+    }
+    [[nodiscard]] sampled_image<B> leaf_picture() const {
+        return {&images_[5], filter_mode::linear, wrap_mode::clamp};
+    }
+
+    void cast_shadows(typename B::recorder& to, std::span<const drawable<B>> all) const {
+        draw_target<B> from_sun{nullptr, &images_[2], {}, 1.0f};
+        for (const drawable<B>& one : all) {
+            if (one.as == look::leaf) {
+                to.draw(kernels::cast_leaf_shadow{}, {one.vertices, view<B>(*scene_)},
+                        {leaf_picture()}, one.geometry, from_sun, draw_state{});
+            } else {
+                to.draw(kernels::cast_shadow{}, {one.vertices, view<B>(*scene_)}, {}, one.geometry,
+                        from_sun, draw_state{});
+            }
+            from_sun.clear_depth.reset();
+        }
+    }
+
+    void draw_surface(typename B::recorder& to, const drawable<B>& one,
+                      const draw_target<B>& picture) const {
+        const buffer_view<B> scene = view<B>(*scene_);
+        switch (one.as) {
+        case look::plain:
+            return to.draw(kernels::lit_branch{3.0f, 1u}, {one.vertices, scene}, {shadow_map()},
+                           one.geometry, picture, draw_state{});
+        case look::leaf:
+            return to.draw(kernels::lit_leaf{}, {one.vertices, scene},
+                           {shadow_map(), leaf_picture()}, one.geometry, picture, draw_state{});
+        case look::bark:
+            return to.draw(wood_, {one.vertices, scene},
+                           {shadow_map(),
+                            sampled_image<B>{&images_[4], filter_mode::linear, wrap_mode::repeat}},
+                           one.geometry, picture, draw_state{});
+        }
+    }
+
+    picture_options options_;
+    kernels::lit_bark wood_;
+    std::vector<typename B::image> images_; // samples, their depth, shadow, picture, bark, leaf
+    std::optional<typename B::buffer> scene_;
+};
+
+/// Draws the branches of `mesh`, whose vertices have been made, into RGBA8 rows from the top.
+/// The tree stands on the ground at y = 0, or at the bottom of its box if that is higher.
+template <backend B, class Mesh>
+[[nodiscard]] result<std::vector<std::uint8_t>>
+draw_tree(B& device, const Mesh& mesh, glm::vec3 low, glm::vec3 high,
+          const picture_options& options, const surface_maps& maps = {}) {
+    const auto painter = tree_painter<B>::create(device, options, maps);
+    if (!painter) {
+        return failure(painter.error());
+    }
+    std::vector<drawable<B>> wood;
+    for (const auto& part : mesh.parts()) {
+        wood.push_back({view<B>(part.vertices), mesh.geometry(part),
+                        options.skeleton ? look::plain : look::bark});
+    }
+    const float ground = std::clamp(0.0f, low.y, high.y);
+    const auto scene = scene_around(glm::vec3(low.x, ground, low.z), high, options);
+    if (auto drawn = run(device,
+                         [&](typename B::recorder& r) {
+                             painter->record(r, scene, wood, ground, 400 * (high.y - low.y));
+                         });
+        !drawn) {
         return failure(drawn.error());
     }
-    std::vector<std::uint8_t> pixels(std::size_t{4} * options.width * options.height);
-    if (auto done = device.download(developed, std::as_writable_bytes(std::span(pixels))); !done) {
-        return failure(done.error());
-    }
-    return pixels;
+    return painter->download(device);
 }
 
 } // namespace skybark::picture

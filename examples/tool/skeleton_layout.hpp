@@ -24,6 +24,7 @@ namespace skybark::tool {
         end.path = from.length[i];
         layout.ends.push_back(end);
         layout.segments.push_back({2 * i, 2 * i + 1, cap_start | cap_end, 0});
+        layout.carriers.insert(layout.carriers.end(), 2, end_carrier{i, i, i, 0});
     }
     return layout;
 }

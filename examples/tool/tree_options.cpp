@@ -3,9 +3,7 @@
 #include "options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <io/text_input.hpp>
-#include <numbers>
 
 namespace skybark::tool {
 
@@ -89,12 +87,6 @@ result<void> check_leaves(const tree_option_words& words, tree_options& options)
     return read_file_name("--leaf-map", words.leaf_map, options.leaf_map);
 }
 
-/// Where a wind from `degrees` blows to: the compass counts clockwise from north, which is −Z.
-glm::vec3 blowing_from(double degrees) {
-    const double angle = degrees * std::numbers::pi / 180;
-    return {static_cast<float>(-std::sin(angle)), 0, static_cast<float>(std::cos(angle))};
-}
-
 result<void> check_wind(const tree_option_words& words, tree_options& options) {
     static constexpr named<sway_kind> sways[] = {{"paper", sway_kind::paper},
                                                  {"quasi_static", sway_kind::quasi_static},
@@ -111,14 +103,8 @@ result<void> check_wind(const tree_option_words& words, tree_options& options) {
     if (auto good = read("--wind", words.wind, 0, strongest_wind, "m/s", options.wind); !good) {
         return good;
     }
-    double from = 270;
-    if (auto good =
-            read("--wind-from", words.wind_from, -360, 360, "degrees clockwise from north", from);
-        !good) {
-        return good;
-    }
-    options.wind_direction = blowing_from(from);
-    return {};
+    return read("--wind-from", words.wind_from, -360, 360, "degrees clockwise from north",
+                options.wind_from);
 }
 
 /// Whether a file of that kind has all frames inside.
@@ -163,9 +149,6 @@ result<void> check_output(const tree_option_context& context, tree_options& opti
 
 result<void> check_frames(const tree_option_words& words, const tree_option_context& context,
                           tree_options& options) {
-    if (words.at && words.frames) {
-        return contradiction("--at and --frames contradict each other; expected one.");
-    }
     if (words.fps && !words.frames) {
         return contradiction("--fps is given without --frames; expected both.");
     }
@@ -197,7 +180,7 @@ result<void> check_frames(const tree_option_words& words, const tree_option_cont
 result<void> check_skeleton(const tree_options& options, const tree_option_words& words) {
     const std::pair<bool, const char*> all[] = {{options.bark_depth > 0, "--bark"},
                                                 {options.leaves == true, "--leaves"},
-                                                {options.closed, "--closed"},
+                                                {options.tubes, "--tubes"},
                                                 {words.lod.has_value(), "--lod"}};
     for (const auto& [is_given, option] : all) {
         if (is_given) {
@@ -215,7 +198,7 @@ void add_tree_options(CLI::App& to, tree_option_words& words) {
         ->type_name("DEPTH");
     to.add_option("--bark-map", words.bark_map, "Its heights, as an image (a built-in bark)")
         ->type_name("IMAGE");
-    to.add_flag("--leaves", words.leaves, "With leaves");
+    to.add_flag("--leaves", words.leaves, "With leaves (as pictures of built-in species are)");
     to.add_flag("--no-leaves", words.no_leaves, "Without leaves");
     to.add_option("--leaf-map", words.leaf_map,
                   "A leaf's colour and outline (alpha), as an image (a built-in leaf)")
@@ -234,13 +217,17 @@ void add_tree_options(CLI::App& to, tree_option_words& words) {
                   "So many, as numbered files (-o NAME_%04d.png) or in one .glb or .apng")
         ->type_name("N");
     to.add_option("--fps", words.fps, "Frames a second (24)")->type_name("F");
-    to.add_option("--lod", words.lod, "Level of detail, 0 is all (0)")->type_name("L");
-    to.add_flag("--closed", words.closed, "One closed surface a tree");
+    to.add_option(
+          "--lod", words.lod,
+          "Level of detail: 0 is all of it, 1 what the picture can show, 2 half as fine (0)")
+        ->type_name("L");
+    to.add_flag("--tubes", words.tubes,
+                "Branches as capped tubes that stick in each other (one closed surface a tree)");
 }
 
 result<tree_options> check(const tree_option_words& words, const tree_option_context& context) {
     tree_options options;
-    options.closed = words.closed;
+    options.tubes = words.tubes;
     result<void> good = check_bark(words, options);
     if (good) {
         good = check_leaves(words, options);

@@ -5,7 +5,6 @@
 
 #include <skybark/core/result.hpp>
 
-#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 
@@ -30,7 +29,7 @@ struct tree_option_words {
     std::optional<std::string> lod;
     bool leaves = false;
     bool no_leaves = false;
-    bool closed = false;
+    bool tubes = false;
 };
 
 /// How a tree answers to the wind: as the paper has it, at rest in every wind, or with inertia.
@@ -50,20 +49,18 @@ struct tree_options {
     std::string leaf_map;       ///< colour with alpha; empty: the built-in leaf
     std::optional<bool> leaves; ///< nothing: as the tree has it
     sway_kind sway = sway_kind::dynamic;
-    float wind = 0;                    ///< m/s, its mean
-    glm::vec3 wind_direction{1, 0, 0}; ///< unit, where it blows to; level
+    float wind = 0;         ///< m/s, its mean
+    double wind_from = 270; ///< degrees clockwise from north
     gust_kind gusts = gust_kind::kaimal;
-    double at = 0;            ///< s, sway until then; of a single frame
-    std::uint32_t frames = 1; ///< frame k is at k / fps seconds
+    double at = 0;            ///< s, sway until then
+    std::uint32_t frames = 1; ///< frame k is k / fps seconds later
     double fps = 24;
-    float lod = 0;       ///< 0: full detail
-    bool closed = false; ///< one closed surface a tree
+    float lod = 0;      ///< 0: full detail
+    bool tubes = false; ///< capped tubes that stick in each other, not one closed surface a tree
     frame_output output = frame_output::single;
     frame_name name; ///< of numbered frames
 
-    [[nodiscard]] double seconds_of(std::uint32_t frame) const {
-        return output == frame_output::single && frames == 1 ? at : frame / fps;
-    }
+    [[nodiscard]] double seconds_of(std::uint32_t frame) const { return at + frame / fps; }
 };
 
 /// What the other options of the command say, as far as it matters here.
@@ -73,7 +70,7 @@ struct tree_option_context {
     bool list_form = false; ///< --form list
 };
 
-/// Adds --bark … --closed to a command.
+/// Adds --bark … --tubes to a command.
 void add_tree_options(CLI::App& to, tree_option_words& words);
 
 /// Numbers in their ranges, names that are known, and nothing that contradicts something else.

@@ -68,14 +68,13 @@ TEST(tree_options, are_what_the_manual_says) {
     EXPECT_FALSE(options.leaves);
     EXPECT_EQ(options.sway, sway_kind::dynamic);
     EXPECT_EQ(options.wind, 0);
-    EXPECT_NEAR(options.wind_direction.x, 1, 1e-7) << "from the west";
-    EXPECT_NEAR(options.wind_direction.z, 0, 1e-7);
+    EXPECT_EQ(options.wind_from, 270) << "from the west";
     EXPECT_EQ(options.gusts, gust_kind::kaimal);
     EXPECT_EQ(options.at, 0);
     EXPECT_EQ(options.frames, 1u);
     EXPECT_EQ(options.fps, 24);
     EXPECT_EQ(options.lod, 0);
-    EXPECT_FALSE(options.closed);
+    EXPECT_FALSE(options.tubes);
     EXPECT_EQ(options.output, frame_output::single);
 }
 
@@ -83,7 +82,7 @@ TEST(tree_options, are_what_was_typed) {
     const tree_options options =
         accepted({"--bark", "0.025", "--bark-map", "b.png", "--leaf-map", "l.png", "--sway",
                   "quasi_static", "--wind", "12.5", "--wind-from", "0", "--gusts", "power_law",
-                  "--at", "2.5", "--lod", "1.5", "--closed"});
+                  "--at", "2.5", "--lod", "1.5", "--tubes"});
     EXPECT_FLOAT_EQ(options.bark_depth, 0.025f);
     EXPECT_EQ(options.bark_map, "b.png");
     EXPECT_EQ(options.leaf_map, "l.png");
@@ -93,29 +92,12 @@ TEST(tree_options, are_what_was_typed) {
     EXPECT_EQ(options.gusts, gust_kind::power_law);
     EXPECT_EQ(options.seconds_of(0), 2.5);
     EXPECT_EQ(options.lod, 1.5f);
-    EXPECT_TRUE(options.closed);
+    EXPECT_TRUE(options.tubes);
     EXPECT_EQ(accepted({"--bark", "off"}).bark_depth, 0);
     EXPECT_EQ(accepted({"--leaves"}).leaves, true);
     EXPECT_EQ(accepted({"--no-leaves"}).leaves, false);
     EXPECT_EQ(accepted({"--sway", "paper"}).sway, sway_kind::paper);
     EXPECT_EQ(accepted({"--gusts", "none"}).gusts, gust_kind::none);
-}
-
-// North is −Z and east is +X; what comes from there goes the other way.
-TEST(tree_options, know_the_compass) {
-    const auto expect = [](const char* from, float x, float z) {
-        const glm::vec3 to = accepted({std::string("--wind-from=") + from}).wind_direction;
-        EXPECT_NEAR(to.x, x, 1e-6f) << from;
-        EXPECT_EQ(to.y, 0) << from;
-        EXPECT_NEAR(to.z, z, 1e-6f) << from;
-    };
-    expect("0", 0, 1);
-    expect("90", -1, 0);
-    expect("180", 0, -1);
-    expect("270", 1, 0);
-    expect("-90", 1, 0);
-    expect("360", 0, 1);
-    expect("45", -0.70710678f, 0.70710678f);
 }
 
 TEST(tree_options, refuse_numbers_that_are_none) {
@@ -155,13 +137,12 @@ TEST(tree_options, refuse_what_contradicts_itself) {
     expect_refused({"--no-leaves", "--leaf-map", "l.png"}, {"--leaf-map", "--no-leaves"});
     expect_refused({"--bark-map", "b.png"}, {"--bark-map", "--bark DEPTH"});
     expect_refused({"--bark", "off", "--bark-map", "b.png"}, {"--bark-map"});
-    expect_refused({"--at", "1", "--frames", "2"}, {"--at", "--frames"}, {"a_%d.png"});
     expect_refused({"--fps", "30"}, {"--fps", "--frames"});
     expect_refused({"--frames", "1000000", "--fps", "0.01"}, {"86400"}, {"a_%d.png"});
     const tree_option_context sticks{"a.png", true};
     expect_refused({"--bark", "0.1"}, {"--skeleton", "--bark"}, sticks);
     expect_refused({"--leaves"}, {"--skeleton", "--leaves"}, sticks);
-    expect_refused({"--closed"}, {"--skeleton", "--closed"}, sticks);
+    expect_refused({"--tubes"}, {"--skeleton", "--tubes"}, sticks);
     expect_refused({"--lod", "1"}, {"--skeleton", "--lod"}, sticks);
     EXPECT_EQ(accepted({"--no-leaves", "--bark", "0", "--wind", "3"}, sticks).wind, 3);
 }
