@@ -1,6 +1,6 @@
 #pragma once
 // Counts a program's allocations through new: containers, std::function. The operators are in
-// tests/cpu/allocations.cpp.
+// tests/support/allocations.cpp.
 
 #include <atomic>
 #include <cstdint>

@@ -155,11 +155,15 @@ class swaying_tree {
     using options_type = swaying_tree_options<typename detail::options_of<Mesh>::type>;
 
     /// Sends everything to the device and makes room. `bark` is not looked at without bark options.
-    /// Errors: those of the parts.
+    /// Errors: bad_input where a leaf hangs on no segment or is nowhere or of no size, or where the
+    /// leaf area index is no number from 0 up; those of the parts, for which no segments is none.
     [[nodiscard]] static result<swaying_tree> create(B& device, const skeleton& of,
                                                      std::span<const leaf> leaves,
                                                      const bark_texture& bark,
                                                      const options_type& options) {
+        if (auto valid = check(of, leaves, options); !valid) {
+            return failure(valid.error());
+        }
         auto mesh = Mesh::create(device, of, options.branches);
         if (!mesh) {
             return failure(mesh.error());
@@ -172,6 +176,9 @@ class swaying_tree {
                                                      std::span<const leaf> leaves,
                                                      const bark_texture& bark,
                                                      const options_type& options) {
+        if (auto valid = check(of, leaves, options); !valid) {
+            return failure(valid.error());
+        }
         auto blades = leaf_mesh<B>::create(device, leaves, options.leaves);
         if (!blades) {
             return failure(blades.error());
@@ -275,6 +282,38 @@ class swaying_tree {
     swaying_tree(Mesh mesh, leaf_mesh<B> leaves, trees::sway<B> moving, wind_loads<B> loads)
         : mesh_(std::move(mesh)), leaves_(std::move(leaves)), sway_(std::move(moving)),
           loads_(std::move(loads)) {}
+
+    /// A kernel takes a leaf's carrier at its word.
+    [[nodiscard]] static result<void> check(const skeleton& of, std::span<const leaf> leaves,
+                                            const options_type& options) {
+        if (!(options.leaf_area_index >= 0)) {
+            return fail(error_code::bad_input, "The leaf area index is not a number from 0 up.");
+        }
+        for (std::size_t i = 0; i < leaves.size(); ++i) {
+            const leaf& l = leaves[i];
+            if (l.carrier >= of.size()) {
+                return fail(error_code::bad_input, std::string("Leaf ")
+                                                       .append(std::to_string(i))
+                                                       .append(" hangs on segment ")
+                                                       .append(std::to_string(l.carrier))
+                                                       .append("; the number of segments is ")
+                                                       .append(std::to_string(of.size()))
+                                                       .append("."));
+            }
+            const glm::vec4& q = l.orientation;
+            const float sum =
+                l.position.x + l.position.y + l.position.z + l.fold + (q.x + q.y) + (q.z + q.w);
+            if (!std::isfinite(sum) || !(l.width >= 0 && l.width < 1e6f) ||
+                !(l.length >= 0 && l.length < 1e6f)) {
+                return fail(error_code::bad_input,
+                            std::string("Leaf ")
+                                .append(std::to_string(i))
+                                .append(" has a place, a turn or a size that is not a number, or "
+                                        "less than nothing."));
+            }
+        }
+        return {};
+    }
 
     void record_branches(recorder& to) const {
         if constexpr (requires { mesh_.record(to, sway_.poses(), view_); }) {

@@ -75,6 +75,14 @@ namespace detail {
     return out;
 }
 
+/// A velocity as somebody else's function or table has it. What is no wind on earth would leave no
+/// number in a tree that it has once blown on: calm in its place.
+[[nodiscard]] inline glm::vec3 wind_or_calm(const glm::vec3& u) {
+    constexpr float most = 1000; // m/s
+    const bool is_wind = std::abs(u.x) <= most && std::abs(u.y) <= most && std::abs(u.z) <= most;
+    return is_wind ? u : glm::vec3(0);
+}
+
 /// Maps over so many elements, in as many calls as the device's longest range asks for.
 template <backend B, class K>
 void map_all(typename B::recorder& to, const K& kernel, const bindings<B, K>& buffers,
@@ -247,7 +255,7 @@ class wind_grid {
     using buffer = typename B::buffer;
     using recorder = typename B::recorder;
 
-    /// `velocities`, m/s and finite: one a node.
+    /// `velocities`, m/s: one a node. What is not within 1000 m/s along each axis is a calm.
     /// Errors: bad_input where a place or the layout is out of range or the number of velocities
     /// is another; whatever the device says of memory.
     [[nodiscard]] static result<wind_grid> create(B& device, std::span<const glm::vec3> places,
@@ -330,7 +338,7 @@ class wind_grid {
 
     void widen(std::span<const glm::vec3> velocities) {
         for (std::size_t i = 0; i < scratch_.size(); ++i) {
-            scratch_[i] = glm::vec4(velocities[i], 0);
+            scratch_[i] = glm::vec4(detail::wind_or_calm(velocities[i]), 0);
         }
     }
 
@@ -340,8 +348,9 @@ class wind_grid {
     std::vector<glm::vec4> scratch_;
 };
 
-/// The wind of a function on the host: `function(place in m, time in s)`, in m/s and finite, is
-/// called for every place at every `record`, and the answers are sent to the device.
+/// The wind of a function on the host: `function(place in m, time in s)`, in m/s, is called for
+/// every place at every `record`, and the answers are sent to the device. What is not within
+/// 1000 m/s along each axis is a calm.
 template <backend B, class Function>
 requires std::is_invocable_r_v<glm::vec3, Function&, glm::vec3, double>
 class wind_function {
@@ -366,7 +375,7 @@ class wind_function {
     /// Appends the air at `time`. Allocates nothing but what the function does.
     void record(recorder& to, double time) {
         for (std::size_t i = 0; i < places_.size(); ++i) {
-            const glm::vec3 u = function_(places_[i], time);
+            const glm::vec3 u = detail::wind_or_calm(function_(places_[i], time));
             now_[i] = shared::wind_velocity(u.x, u.y, u.z);
         }
         if (!now_.empty()) {
