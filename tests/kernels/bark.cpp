@@ -365,6 +365,74 @@ TEST(bark_kernel, the_devices_program_has_the_plain_kernels_bits) {
     }
 }
 
+/// As many passes of one level, by the kernel's own functions.
+std::vector<surface_vertex> pass_by_pass(kernels::bark kernel, trees::host_mesh mesh,
+                                         const std::vector<float>& heights, std::uint32_t passes) {
+    kernel.levels = 1;
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+        mesh = as_mesh(plain(kernel, mesh, heights));
+    }
+    return mesh.vertices;
+}
+
+TEST(bark_kernel, levels_in_one_pass_are_passes_of_one_level_bit_for_bit) {
+    const auto heights = random_heights(13);
+    std::size_t uneven = 0;
+    for (const float threshold : {0.05f, 0.3f, 0.7f, 1.4f, 5.0f}) {
+        for (const trees::host_mesh& mesh :
+             {triangle_soup(14, 75), support::closed_stem(9, 4), triangle_soup(15, 1)}) {
+            for (std::uint32_t levels = 1; levels <= 4; ++levels) {
+                auto kernel = test_kernel(threshold);
+                kernel.levels = levels;
+                const auto expected = pass_by_pass(kernel, mesh, heights, levels);
+                const std::uint64_t triangles = expected.size() / 3;
+                uneven += triangles % (mesh.indices.size() / 3) != 0 ? 1 : 0;
+                ASSERT_EQ(kernel.strips(), 1u << (2 * levels));
+                if (levels < 4) {
+                    expect_equal_bits(plain(kernel, mesh, heights), expected);
+                }
+                const auto compact = by_device(kernel, mesh, heights, padding::compact, triangles);
+                ASSERT_EQ(compact.count.written, triangles);
+                ASSERT_EQ(compact.count.required, triangles);
+                expect_equal_bits(compact.list, expected);
+                if (levels == 2) {
+                    const std::uint64_t slots = 16 * (mesh.indices.size() / 3);
+                    const auto padded =
+                        by_device(kernel, mesh, heights, padding::degenerate, slots);
+                    ASSERT_EQ(padded.count.written, slots);
+                    expect_equal_bits(without_spare(padded.list), expected);
+                }
+            }
+        }
+    }
+    EXPECT_GT(uneven, 10u) << "triangles that are split less often than others";
+}
+
+TEST(bark_kernel, a_path_that_no_triangle_takes_is_empty) {
+    // One long edge makes two children, which stay.
+    auto kernel = test_kernel(1);
+    kernel.levels = 2;
+    kernel.relief = 0;
+    trees::host_mesh mesh = triangle_soup(16, 1);
+    mesh.vertices[0].position = {0, 0, 0};
+    mesh.vertices[1].position = {4, 0, 0};
+    mesh.vertices[2].position = {2, 0.5f, 0};
+    kernel.threshold = 2.1f; // the long side, and no other
+    const auto heights = random_heights(17);
+    const auto at = [&](std::uint32_t strip) {
+        return kernel.triangles(0, strip, mesh.vertices, mesh.indices, heights);
+    };
+    for (std::uint32_t strip = 0; strip < 16; ++strip) {
+        EXPECT_EQ(at(strip), strip == 0 || strip == 4 ? 1u : 0u) << strip; // paths 0 0 and 1 0
+    }
+    kernel.threshold = 1.5f; // all sides first, then some of the pieces' long sides
+    std::uint32_t all = 0;
+    for (std::uint32_t strip = 0; strip < 16; ++strip) {
+        all += at(strip);
+    }
+    EXPECT_EQ(all, pass_by_pass(kernel, mesh, heights, 2).size() / 3);
+}
+
 TEST(bark_kernel, too_little_room_takes_whole_triangles_in_order) {
     const auto heights = random_heights(6);
     const trees::host_mesh mesh = triangle_soup(7, 100);
@@ -377,6 +445,15 @@ TEST(bark_kernel, too_little_room_takes_whole_triangles_in_order) {
         EXPECT_EQ(made.count.written, room);
         EXPECT_EQ(made.count.required, triangles);
         expect_equal_bits(made.list, std::span(expected).first(3 * room));
+    }
+    auto deep = test_kernel(0.3f);
+    deep.levels = 3;
+    const auto all = pass_by_pass(deep, mesh, heights, 3);
+    for (const std::uint64_t room : {std::uint64_t{0}, std::uint64_t{7}, all.size() / 3 - 1}) {
+        const auto made = by_device(deep, mesh, heights, padding::compact, room);
+        EXPECT_EQ(made.count.written, room);
+        EXPECT_EQ(made.count.required, all.size() / 3);
+        expect_equal_bits(made.list, std::span(all).first(3 * room));
     }
 }
 

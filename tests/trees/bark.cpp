@@ -224,6 +224,29 @@ TEST(bark, passes_end_where_the_options_say) {
     EXPECT_EQ(support::count_edges(support::weld(mesh.vertices), mesh.indices).open, 0u);
 }
 
+TEST(bark, levels_a_pass_change_nothing) {
+    const trees::host_mesh stem = support::closed_stem(8, 5);
+    bark_options options = coarse_bark(0.06f);
+    cpu::device plain;
+    const trees::host_mesh expected = bark_of(plain, stem, options);
+    std::size_t passes = 99;
+    for (const std::uint32_t amplification : {0u, 4u, 15u, 16u, 64u, 0xffffffffu}) {
+        cpu::device_options chosen;
+        chosen.limits.amplification = amplification;
+        cpu::device device(chosen);
+        const auto mesh = one_part_mesh<cpu::device>::make(device, stem);
+        const auto bark = bark_on(device, mesh, options);
+        const std::string what = std::to_string(amplification) + " triangles a pass";
+        expect_equal_bits(refined(device, mesh, bark), expected, what);
+        EXPECT_LE(bark.parts()[0].levels.size(), passes) << what;
+        passes = bark.parts()[0].levels.size();
+        for (const std::uint32_t levels : bark.parts()[0].levels) {
+            EXPECT_LE(1u << (2 * (levels - 1)), std::max(1u, amplification / 4)) << what;
+        }
+    }
+    EXPECT_EQ(passes, 1u);
+}
+
 TEST(bark, without_relief_and_rounding_the_surface_stays) {
     cpu::device device;
     bark_options options = coarse_bark(0.08f);

@@ -1,9 +1,11 @@
 #pragma once
-// bark, the three edges of a triangle at a time.
+// bark, all levels in one go, a small batch of triangles at a time.
 //
-// Corners and edges lie in the lanes of one vector; the fourth is spare. The operations and their
-// order are those of shaders/shared/bark.glsl, so the bits are the same as the plain kernel's (a
-// test compares them). GCC's and clang's vector types; other compilers run the plain kernel.
+// A level's split edges, each once, fill the lanes of vectors whichever triangles they are of.
+// Points stay where they were made, with the map's height there, until the triangles below them are
+// written. The operations and their order are those of shaders/shared/bark.glsl, so the bits are
+// the same as the plain kernel's (a test compares them). GCC's and clang's vector types; other
+// compilers run the plain kernel.
 
 #include <skybark/cpu/hermite_branch.hpp>
 #include <skybark/kernels/bark.hpp>
@@ -12,10 +14,6 @@
 
 namespace skybark::cpu {
 namespace lanes {
-
-/// Lane k's successor around the triangle.
-[[nodiscard]] inline f4 next(f4 v) { return __builtin_shufflevector(v, v, 1, 2, 0, 3); }
-[[nodiscard]] inline v3 next(v3 v) { return {next(v.x), next(v.y), next(v.z)}; }
 
 [[nodiscard]] inline f4 dot(v3 a, v3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 [[nodiscard]] inline v3 choose(i4 mask, v3 yes, v3 no) {
@@ -44,139 +42,274 @@ namespace lanes {
 
 } // namespace lanes
 
-template <>
-struct program<kernels::bark> : plain_program<kernels::bark> {
-    using kernel_type = kernels::bark;
-    using vertices_span = kernel_type::vertices_span;
-    using indices_span = kernel_type::indices_span;
-    using heights_span = kernel_type::heights_span;
+/// A vertex as in memory, and the map's height there.
+struct bark_point {
+    lanes::f4 rows[3];
+    float height;
+};
+struct bark_triangle {
+    const bark_point* corners[3];
+    std::uint32_t split; ///< shared::bark_pattern; 0 after the last level
+};
 
-    [[nodiscard]] static std::uint64_t count(const kernel_type& kernel, range elements,
-                                             vertices_span vertices, indices_span indices,
-                                             heights_span) {
-        std::uint64_t triangles = 0;
-        for (std::uint32_t i = elements.first; i < elements.first + elements.count; ++i) {
-            lanes::f4 row[4];
-            for (std::uint32_t k = 0; k < 3; ++k) {
-                row[k] = lanes::load(&vertices[corner(kernel, i, k, indices)]);
-            }
-            row[3] = lanes::splat(0);
-            lanes::transpose(row[0], row[1], row[2], row[3]);
-            triangles += shared::bark_triangles(pattern({row[0], row[1], row[2]}, kernel));
-        }
-        return triangles;
-    }
+/// Splits triangles and hands those that stay to `output(triangles)`, in order. An output that only
+/// counts has `add(n)`, and gets neither tangents nor the last level's midpoints.
+template <class Output>
+class bark_splitter {
+  public:
+    using heights_span = kernels::bark::heights_span;
 
-    template <class Sink>
-    static void triangles(const kernel_type& kernel, range elements, Sink& sink,
-                          vertices_span vertices, indices_span indices, heights_span heights) {
-        static const corner_table table;
-        for (std::uint32_t i = elements.first; i < elements.first + elements.count; ++i) {
-            if (sink.room() < 4) {
-                plain_program<kernel_type>::triangles(kernel, {i, 1}, sink, vertices, indices,
-                                                      heights);
-                continue;
-            }
-            points p;
-            for (std::uint32_t k = 0; k < 3; ++k) {
-                const surface_vertex* from = &vertices[corner(kernel, i, k, indices)];
-                for (std::uint32_t row = 0; row < 3; ++row) {
-                    p.rows[k][row] =
-                        lanes::load(reinterpret_cast<const std::byte*>(from) + 16 * row);
-                }
-            }
-            sink.skip(write(kernel, table, p, sink.place(), heights));
+    bark_splitter(const kernels::bark& kernel, heights_span heights, Output& output)
+        : kernel_(kernel), heights_(heights), output_(output), codes_(all_codes()) {}
+
+    void elements(range all, kernels::bark::vertices_span vertices,
+                  kernels::bark::indices_span indices) {
+        for (std::uint32_t done = 0; done < all.count && output_.wants_more(); done += batch) {
+            some_elements({all.first + done, std::min(batch, all.count - done)}, vertices, indices);
         }
     }
 
   private:
-    /// shared::bark_corner of every pattern.
-    struct corner_table {
-        std::uint8_t codes[2][8][12];
+    using point = bark_point;
+    using triangle = bark_triangle;
 
-        corner_table() {
+    /// So many triangles of one level are split at a time, between up to thrice as many others.
+    static constexpr std::uint32_t batch = 16;
+    static constexpr std::uint32_t longest = 4 * batch;
+    static constexpr std::uint32_t most_edges = 3 * batch; ///< and corners
+    static constexpr bool counts = requires(Output & o) { o.add(1u); };
+
+    /// Where things of a batch are, by a number that says little: what's there must be compared.
+    struct places {
+        std::uint8_t at[128]{};
+        [[nodiscard]] std::uint8_t& of(std::size_t number) { return at[number % 128]; }
+    };
+
+    /// Texture coordinates, and the map's heights there. Sizes are multiples of 8.
+    struct lookups {
+        float u[most_edges];
+        float v[most_edges];
+        float height[most_edges];
+
+        void add(std::uint32_t i, float at_u, float at_v) {
+            u[i] = at_u;
+            v[i] = at_v;
+        }
+    };
+    static_assert(most_edges % 8 == 0);
+
+    /// shared::bark_corner, by the other diagonal, pattern, triangle and corner.
+    struct corner_codes {
+        std::uint8_t of[2][8][12];
+
+        corner_codes() {
             for (std::uint32_t i = 0; i < 2 * 8 * 12; ++i) {
-                const std::uint32_t pattern = i / 12 % 8;
-                const bool other = i >= 8 * 12;
-                codes[i / 96][pattern][i % 12] = static_cast<std::uint8_t>(
-                    shared::bark_corner(pattern, other, i % 12 / 3, i % 3));
+                of[i / 96][i / 12 % 8][i % 12] = static_cast<std::uint8_t>(
+                    shared::bark_corner(i / 12 % 8, i >= 96, i % 12 / 3, i % 3));
             }
         }
     };
+    [[nodiscard]] static const corner_codes& all_codes() {
+        static const corner_codes codes;
+        return codes;
+    }
 
-    /// Corners and midpoints 0 … 5 as in memory: three vectors each.
-    struct points {
-        lanes::f4 rows[6][3];
+    /// A row of four points, in columns.
+    struct row_columns {
+        lanes::v3 xyz;
+        lanes::f4 w;
     };
-
-    [[nodiscard]] static std::uint32_t corner(const kernel_type& kernel, std::uint32_t i,
-                                              std::uint32_t k, indices_span indices) {
-        return kernel.indexed != 0 ? kernel.base_vertex + indices[3 * i + k] : 3 * i + k;
+    [[nodiscard]] static row_columns columns(const point* const (&p)[4], std::uint32_t row) {
+        lanes::f4 v[4] = {p[0]->rows[row], p[1]->rows[row], p[2]->rows[row], p[3]->rows[row]};
+        lanes::transpose(v[0], v[1], v[2], v[3]);
+        return {{v[0], v[1], v[2]}, v[3]};
     }
 
-    [[nodiscard]] static std::uint32_t pattern(const lanes::v3& position,
-                                               const kernel_type& kernel) {
-        const lanes::v3 d = lanes::next(position) - position;
-        return lanes::first_three(lanes::dot(d, d) >
-                                  lanes::splat(kernel.threshold * kernel.threshold));
+    /// At most a batch. A vertex of several triangles is mostly found to be there already.
+    void some_elements(range all, kernels::bark::vertices_span vertices,
+                       kernels::bark::indices_span indices) {
+        point corners[most_edges];
+        std::uint32_t index_of[most_edges];
+        triangle triangles[batch];
+        places known;
+        std::uint32_t count = 0;
+        for (std::uint32_t c = 0; c < 3 * all.count; ++c) {
+            const std::uint32_t at = 3 * all.first + c;
+            const std::uint32_t index =
+                kernel_.indexed != 0 ? kernel_.base_vertex + indices[at] : at;
+            std::uint8_t& place = known.of(index);
+            if (place >= count || index_of[place] != index) {
+                place = static_cast<std::uint8_t>(count);
+                index_of[count] = index;
+                const auto* from = reinterpret_cast<const std::byte*>(&vertices[index]);
+                for (std::uint32_t row = 0; row < 3; ++row) {
+                    corners[count].rows[row] = lanes::load(from + 16 * row);
+                }
+                ++count;
+            }
+            triangles[c / 3].corners[c % 3] = &corners[place];
+        }
+        std::uint32_t active = 0;
+        for (std::uint32_t t = 0; t < all.count; ++t) {
+            triangles[t].split = pattern(triangles[t].corners);
+            active += triangles[t].split != 0 ? 1 : 0;
+        }
+        if (active != 0) {
+            lookups map;
+            for (std::uint32_t c = 0; c < count; ++c) {
+                map.add(c, corners[c].rows[0][3], corners[c].rows[1][3]);
+            }
+            find_heights(map, count);
+            for (std::uint32_t c = 0; c < count; ++c) {
+                corners[c].height = map.height[c];
+            }
+        }
+        hand_on({triangles, all.count}, active, kernel_.levels);
     }
 
-    /// Writes the triangles of one, and says how many.
-    [[nodiscard]] static std::uint32_t write(const kernel_type& kernel, const corner_table& table,
-                                             points& p, std::byte* to, heights_span heights) {
+    /// shared::bark_pattern: sums of squares in the same order, edge by edge.
+    [[nodiscard]] std::uint32_t pattern(const point* const (&c)[3]) const {
         using namespace lanes;
-        f4 c[3][4]; // the corners' columns: x, y, z, u; normal, v; tangent, w
-        for (std::uint32_t row = 0; row < 3; ++row) {
+        f4 d[4];
+        for (int k = 0; k < 3; ++k) {
+            const f4 edge = c[k == 2 ? 0 : k + 1]->rows[0] - c[k]->rows[0];
+            d[k] = edge * edge;
+        }
+        d[3] = splat(0);
+        transpose(d[0], d[1], d[2], d[3]);
+        return first_three(d[0] + d[1] + d[2] > splat(kernel_.threshold * kernel_.threshold));
+    }
+
+    /// What becomes of triangles with so many levels to go, of which `active` are to be split:
+    /// those that stay are put out, and batches with others divided.
+    void hand_on(std::span<const triangle> all, std::uint32_t active, std::uint32_t levels) {
+        if (levels == 0 || active == 0) {
+            output_(all);
+            return;
+        }
+        if constexpr (counts) {
+            if (levels == 1) {
+                for (const triangle& t : all) {
+                    output_.add(shared::bark_triangles(t.split));
+                }
+                return;
+            }
+        }
+        const std::uint32_t batches = (active - 1) / batch + 1;
+        const std::uint32_t each = (active - 1) / batches + 1;
+        for (std::size_t first = 0; first < all.size();) {
+            std::size_t end = first;
+            for (std::uint32_t found = 0; end < all.size() && end - first < longest && found < each;
+                 ++end) {
+                found += all[end].split != 0 ? 1 : 0;
+            }
+            divide(all.subspan(first, end - first), levels);
+            first = end;
+        }
+    }
+
+    /// Splits the triangles of a batch, and their children as far as there are `levels`.
+    void divide(std::span<const triangle> triangles, std::uint32_t levels) {
+        point middles[most_edges];
+        std::uint8_t middle_of[most_edges]; // of each split edge, triangle by triangle
+        triangle children[longest + 3 * batch];
+        add_midpoints(triangles, middles, middle_of);
+        std::uint32_t active = 0;
+        const std::size_t count =
+            add_children(triangles, middles, middle_of, levels > 1, children, active);
+        hand_on({children, count}, active, levels - 1);
+    }
+
+    /// The midpoints of all split edges, and which is whose: triangle by triangle, ab, bc, ca.
+    void add_midpoints(std::span<const triangle> triangles, point* to,
+                       std::uint8_t* middle_of) const {
+        const point* a[most_edges];
+        const point* b[most_edges];
+        lookups map;
+        places known;
+        std::uint32_t edges = 0;
+        for (const triangle& t : triangles) {
+            for (std::uint32_t k = 0; k < 3 && t.split != 0; ++k) {
+                if (((t.split >> k) & 1u) == 0) {
+                    continue;
+                }
+                const point* from = t.corners[k];
+                const point* end = t.corners[k == 2 ? 0 : k + 1];
+                const auto x = reinterpret_cast<std::uintptr_t>(from) / sizeof(point);
+                const auto y = reinterpret_cast<std::uintptr_t>(end) / sizeof(point);
+                std::uint8_t& place = known.of((x + y) * 3 + (x ^ y) * 7);
+                // The triangle on the other side has the edge the other way round.
+                if (place >= edges || a[place] != end || b[place] != from) {
+                    place = static_cast<std::uint8_t>(edges);
+                    a[edges] = from;
+                    b[edges] = end;
+                    map.add(edges++, (from->rows[0][3] + end->rows[0][3]) * 0.5f,
+                            (from->rows[1][3] + end->rows[1][3]) * 0.5f);
+                }
+                *middle_of++ = place;
+            }
+        }
+        find_heights(map, edges);
+        for (std::uint32_t spare = edges; spare % 4 != 0; ++spare) {
+            a[spare] = a[0];
+            b[spare] = b[0];
+        }
+        for (std::uint32_t first = 0; first < edges; first += 4) {
+            four_midpoints({a[first], a[first + 1], a[first + 2], a[first + 3]},
+                           {b[first], b[first + 1], b[first + 2], b[first + 3]}, &map.height[first],
+                           to + first);
+        }
+    }
+
+    /// All triangles of the next level, in order, and how many; adds those to be split to `active`.
+    std::size_t add_children(std::span<const triangle> triangles, const point* middles,
+                             const std::uint8_t* middle_of, bool split_again, triangle* to,
+                             std::uint32_t& active) const {
+        const triangle* const begin = to;
+        for (const triangle& t : triangles) {
+            if (t.split == 0) {
+                *to++ = t;
+                continue;
+            }
+            const point* all[6] = {t.corners[0], t.corners[1], t.corners[2],
+                                   nullptr,      nullptr,      nullptr};
             for (std::uint32_t k = 0; k < 3; ++k) {
-                c[row][k] = p.rows[k][row];
+                if (((t.split >> k) & 1u) != 0) {
+                    all[3 + k] = middles + *middle_of++;
+                }
             }
-            c[row][3] = splat(0);
-            transpose(c[row][0], c[row][1], c[row][2], c[row][3]);
-        }
-        const std::uint32_t split = pattern({c[0][0], c[0][1], c[0][2]}, kernel);
-        if (split == 0) {
-            put(p, 0, 1, 2, to);
-            return 1;
-        }
-        add_midpoints(kernel, c, p, heights);
-        const std::uint32_t count = shared::bark_triangles(split);
-        const bool other = count == 3 && other_diagonal(p, split);
-        const std::uint8_t* code = table.codes[other ? 1 : 0][split];
-        for (std::uint32_t t = 0; t < count; ++t) {
-            put(p, code[3 * t], code[3 * t + 1], code[3 * t + 2],
-                to + t * 3 * sizeof(surface_vertex));
-        }
-        return count;
-    }
-
-    static void put(const points& p, std::uint32_t a, std::uint32_t b, std::uint32_t c,
-                    std::byte* to) {
-        float* out = reinterpret_cast<float*>(to);
-        for (const std::uint32_t code : {a, b, c}) {
-            for (const lanes::f4& row : p.rows[code]) {
-                lanes::stream(out, row);
-                out += 4;
+            const std::uint32_t count = shared::bark_triangles(t.split);
+            const bool other = count == 3 && takes_other_diagonal(all, t.split);
+            const std::uint8_t* code = codes_.of[other ? 1 : 0][t.split];
+            for (std::uint32_t child = 0; child < count; ++child, code += 3, ++to) {
+                *to = {{all[code[0]], all[code[1]], all[code[2]]}, 0};
+                to->split = split_again ? pattern(to->corners) : 0;
+                active += to->split != 0 ? 1 : 0;
             }
         }
+        return static_cast<std::size_t>(to - begin);
     }
 
-    [[nodiscard]] static bool other_diagonal(const points& p, std::uint32_t split) {
+    [[nodiscard]] bool takes_other_diagonal(const point* const (&all)[6],
+                                            std::uint32_t split) const {
         const auto square = [&](bool other) {
-            const std::uint32_t from = shared::bark_corner(split, other, 1, other ? 0 : 1);
-            const std::uint32_t to = shared::bark_corner(split, other, 1, 2);
-            const lanes::f4 d = p.rows[to][0] - p.rows[from][0];
+            const std::uint8_t* child = codes_.of[other ? 1 : 0][split] + 3;
+            const lanes::f4 d = all[child[2]]->rows[0] - all[child[other ? 0 : 1]]->rows[0];
             return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
         };
         return square(true) < square(false);
     }
 
-    /// shared::bark_middle and bark_raised for all three edges.
-    static void add_midpoints(const kernel_type& kernel, const lanes::f4 (&c)[3][4], points& p,
-                              heights_span heights) {
+    /// shared::bark_middle and bark_raised of four edges.
+    void four_midpoints(const point* const (&from)[4], const point* const (&end)[4],
+                        const float* heights, point* to) const {
         using namespace lanes;
-        const v3 p1{c[0][0], c[0][1], c[0][2]}, p2 = next(p1);
-        const v3 n1{c[1][0], c[1][1], c[1][2]}, n2 = next(n1);
-        const v3 t1{c[2][0], c[2][1], c[2][2]}, t2 = next(t1);
+        const auto [p1, u1] = columns(from, 0);
+        const auto [n1, v1] = columns(from, 1);
+        const auto [t1, w1] = columns(from, 2);
+        const auto [p2, u2] = columns(end, 0);
+        const auto [n2, v2] = columns(end, 1);
+        const auto [t2, w2] = columns(end, 2);
         const i4 in_order =
             (p1.x < p2.x) | ((p1.x == p2.x) & ((p1.y < p2.y) | ((p1.y == p2.y) & (p1.z < p2.z))));
         const v3 a = choose(in_order, p1, p2);
@@ -185,46 +318,66 @@ struct program<kernels::bark> : plain_program<kernels::bark> {
         const v3 nb = choose(in_order, n2, n1);
 
         const v3 middle = (p1 + p2) * splat(0.5f);
-        const f4 u = (c[0][3] + next(c[0][3])) * 0.5f;
-        const f4 v = (c[1][3] + next(c[1][3])) * 0.5f;
+        const f4 u = (u1 + u2) * 0.5f;
+        const f4 v = (v1 + v2) * 0.5f;
         const v3 n = unit_or_itself(n1 + n2);
-        const v3 t = unit_or_itself(t1 + t2);
-        const f4 w1 = c[2][3];
-        const f4 w2 = next(w1);
         const f4 w = choose((w1 == splat(0)) | (w2 == splat(0)), splat(0), (w1 + w2) * 0.5f);
 
         const v3 ab = b - a;
-        const heights_of_both h = both_heights(kernel, c[0][3], c[1][3], u, v, heights);
-        const f4 most = splat(kernel.steepest) * square_root(dot(ab, ab));
-        const f4 wanted = kernel.relief * (h.middles - 0.5f * (h.corners + next(h.corners)));
+        const f4 h = load(heights);
+        const f4 h1{from[0]->height, from[1]->height, from[2]->height, from[3]->height};
+        const f4 h2{end[0]->height, end[1]->height, end[2]->height, end[3]->height};
+        const f4 most = splat(kernel_.steepest) * square_root(dot(ab, ab));
+        const f4 wanted = kernel_.relief * (h - 0.5f * (h1 + h2));
         const f4 rise = choose(wanted > most, most, choose(wanted < -most, -most, wanted));
         const v3 round = na * dot(ab, na) - nb * dot(ab, nb);
-        const v3 raised = middle - round * splat(0.125f * kernel.rounding) + n * rise;
-        const v3 position = choose(w == splat(0), middle, raised);
+        const v3 raised = middle - round * splat(0.125f * kernel_.rounding) + n * rise;
 
-        f4 rows[3][4] = {
-            {position.x, position.y, position.z, u}, {n.x, n.y, n.z, v}, {t.x, t.y, t.z, w}};
-        for (std::uint32_t row = 0; row < 3; ++row) {
-            transpose(rows[row][0], rows[row][1], rows[row][2], rows[row][3]);
-            for (std::uint32_t k = 0; k < 3; ++k) {
-                p.rows[3 + k][row] = rows[row][k];
-            }
+        put(to, 0, choose(w == splat(0), middle, raised), u);
+        put(to, 1, n, v);
+        if constexpr (counts) {
+            put(to, 2, {splat(0), splat(0), splat(0)}, w);
+        } else {
+            put(to, 2, unit_or_itself(t1 + t2), w);
+        }
+        for (int k = 0; k < 4; ++k) {
+            to[k].height = h[k];
         }
     }
 
-    /// The map's heights at the corners and at the midpoints.
-    struct heights_of_both {
-        lanes::f4 corners, middles;
-    };
-    [[nodiscard]] static heights_of_both both_heights(const kernel_type& kernel, lanes::f4 u,
-                                                      lanes::f4 v, lanes::f4 middle_u,
-                                                      lanes::f4 middle_v, heights_span heights) {
+    static void put(point* to, std::uint32_t row, lanes::v3 xyz, lanes::f4 w) {
+        lanes::transpose(xyz.x, xyz.y, xyz.z, w);
+        to[0].rows[row] = xyz.x;
+        to[1].rows[row] = xyz.y;
+        to[2].rows[row] = xyz.z;
+        to[3].rows[row] = w;
+    }
+
+    /// shared::bark_texel.
+    [[nodiscard]] static lanes::f4 texel(lanes::f4 coordinate, std::uint32_t size) {
+        using namespace lanes;
+        const f4 part = coordinate - floor(coordinate);
+        const f4 sure = choose((part >= splat(0)) & (part <= splat(1)), part, splat(0));
+        const float n = static_cast<float>(size);
+        const f4 x = sure * n - 0.5f;
+        return choose(x < splat(0), x + n, x);
+    }
+
+    /// The map's heights at the first `count` of some places.
+    void find_heights(lookups& at, std::uint32_t count) const {
+        for (std::uint32_t spare = count; spare % 8 != 0; ++spare) {
+            at.add(spare, 0, 0);
+        }
 #    if defined(__x86_64__)
         if (__builtin_cpu_supports("avx2")) {
-            return both_heights_avx2(kernel, u, v, middle_u, middle_v, heights);
+            find_heights_avx2(at, count);
+            return;
         }
 #    endif
-        return {heights_at(kernel, u, v, heights), heights_at(kernel, middle_u, middle_v, heights)};
+        for (std::uint32_t i = 0; i < count; i += 4) {
+            const lanes::f4 h = heights_at(lanes::load(at.u + i), lanes::load(at.v + i));
+            std::memcpy(at.height + i, &h, sizeof h);
+        }
     }
 
 #    if defined(__x86_64__)
@@ -249,74 +402,58 @@ struct program<kernels::bark> : plain_program<kernels::bark> {
         return _mm256_add_ps(a, _mm256_mul_ps(_mm256_sub_ps(b, a), t));
     }
 
-    [[gnu::target("avx2")]] static __m256 pair_avx2(lanes::f4 a, lanes::f4 b) {
-        return _mm256_set_m128(reinterpret_cast<__m128>(b), reinterpret_cast<__m128>(a));
-    }
-
-    [[gnu::target("avx2")]] static heights_of_both
-    both_heights_avx2(const kernel_type& kernel, lanes::f4 u, lanes::f4 v, lanes::f4 middle_u,
-                      lanes::f4 middle_v, heights_span heights) {
-        const __m256 x =
-            texel_avx2(_mm256_mul_ps(pair_avx2(u, middle_u), _mm256_set1_ps(kernel.repeats_around)),
-                       kernel.width);
-        const __m256 y =
-            texel_avx2(_mm256_mul_ps(pair_avx2(v, middle_v), _mm256_set1_ps(kernel.repeats_along)),
-                       kernel.height);
-        const __m256 left = _mm256_floor_ps(x);
-        const __m256 low = _mm256_floor_ps(y);
-        const __m256i one = _mm256_set1_epi32(1);
-        const __m256i width = _mm256_set1_epi32(static_cast<std::int32_t>(kernel.width));
-        const __m256i x0 = wrapped_avx2(_mm256_cvttps_epi32(left), kernel.width);
-        const __m256i x1 = wrapped_avx2(_mm256_add_epi32(x0, one), kernel.width);
-        const __m256i y0 = wrapped_avx2(_mm256_cvttps_epi32(low), kernel.height);
-        const __m256i y1 = wrapped_avx2(_mm256_add_epi32(y0, one), kernel.height);
-        const __m256i row0 = _mm256_mullo_epi32(y0, width);
-        const __m256i row1 = _mm256_mullo_epi32(y1, width);
-        const float* map = heights.data();
-        const __m256 h00 = _mm256_i32gather_ps(map, _mm256_add_epi32(row0, x0), 4);
-        const __m256 h10 = _mm256_i32gather_ps(map, _mm256_add_epi32(row0, x1), 4);
-        const __m256 h01 = _mm256_i32gather_ps(map, _mm256_add_epi32(row1, x0), 4);
-        const __m256 h11 = _mm256_i32gather_ps(map, _mm256_add_epi32(row1, x1), 4);
-        const __m256 tx = _mm256_sub_ps(x, left);
-        const __m256 h =
-            mix_avx2(mix_avx2(h00, h10, tx), mix_avx2(h01, h11, tx), _mm256_sub_ps(y, low));
-        return {reinterpret_cast<lanes::f4>(_mm256_castps256_ps128(h)),
-                reinterpret_cast<lanes::f4>(_mm256_extractf128_ps(h, 1))};
+    [[gnu::target("avx2")]] void find_heights_avx2(lookups& at, std::uint32_t count) const {
+        for (std::uint32_t i = 0; i < count; i += 8) {
+            const __m256 x = texel_avx2(
+                _mm256_mul_ps(_mm256_loadu_ps(at.u + i), _mm256_set1_ps(kernel_.repeats_around)),
+                kernel_.width);
+            const __m256 y = texel_avx2(
+                _mm256_mul_ps(_mm256_loadu_ps(at.v + i), _mm256_set1_ps(kernel_.repeats_along)),
+                kernel_.height);
+            const __m256 left = _mm256_floor_ps(x);
+            const __m256 low = _mm256_floor_ps(y);
+            const __m256i one = _mm256_set1_epi32(1);
+            const __m256i width = _mm256_set1_epi32(static_cast<std::int32_t>(kernel_.width));
+            const __m256i x0 = wrapped_avx2(_mm256_cvttps_epi32(left), kernel_.width);
+            const __m256i x1 = wrapped_avx2(_mm256_add_epi32(x0, one), kernel_.width);
+            const __m256i y0 = wrapped_avx2(_mm256_cvttps_epi32(low), kernel_.height);
+            const __m256i y1 = wrapped_avx2(_mm256_add_epi32(y0, one), kernel_.height);
+            const __m256i row0 = _mm256_mullo_epi32(y0, width);
+            const __m256i row1 = _mm256_mullo_epi32(y1, width);
+            const float* map = heights_.data();
+            const __m256 h00 = _mm256_i32gather_ps(map, _mm256_add_epi32(row0, x0), 4);
+            const __m256 h10 = _mm256_i32gather_ps(map, _mm256_add_epi32(row0, x1), 4);
+            const __m256 h01 = _mm256_i32gather_ps(map, _mm256_add_epi32(row1, x0), 4);
+            const __m256 h11 = _mm256_i32gather_ps(map, _mm256_add_epi32(row1, x1), 4);
+            const __m256 tx = _mm256_sub_ps(x, left);
+            const __m256 h =
+                mix_avx2(mix_avx2(h00, h10, tx), mix_avx2(h01, h11, tx), _mm256_sub_ps(y, low));
+            _mm256_storeu_ps(at.height + i, h);
+        }
     }
 #    endif
 
-    /// shared::bark_texel.
-    [[nodiscard]] static lanes::f4 texel(lanes::f4 coordinate, std::uint32_t size) {
+    /// kernels::bark::height_at in lanes.
+    [[nodiscard]] lanes::f4 heights_at(lanes::f4 u, lanes::f4 v) const {
         using namespace lanes;
-        const f4 part = coordinate - floor(coordinate);
-        const f4 sure = choose((part >= splat(0)) & (part <= splat(1)), part, splat(0));
-        const float n = static_cast<float>(size);
-        const f4 x = sure * n - 0.5f;
-        return choose(x < splat(0), x + n, x);
-    }
-
-    /// kernels::bark::height_at in the first three lanes.
-    [[nodiscard]] static lanes::f4 heights_at(const kernel_type& kernel, lanes::f4 u, lanes::f4 v,
-                                              heights_span heights) {
-        using namespace lanes;
-        const f4 x = texel(u * kernel.repeats_around, kernel.width);
-        const f4 y = texel(v * kernel.repeats_along, kernel.height);
+        const f4 x = texel(u * kernel_.repeats_around, kernel_.width);
+        const f4 y = texel(v * kernel_.repeats_along, kernel_.height);
         const f4 left = floor(x);
         const f4 low = floor(y);
         const auto wrapped = [](i4 at, std::uint32_t size) {
             const auto n = static_cast<std::int32_t>(size);
             return at & (at < i4{n, n, n, n});
         };
-        const i4 x0 = wrapped(__builtin_convertvector(left, i4), kernel.width);
-        const i4 x1 = wrapped(x0 + 1, kernel.width);
-        const i4 y0 = wrapped(__builtin_convertvector(low, i4), kernel.height);
-        const i4 y1 = wrapped(y0 + 1, kernel.height);
+        const i4 x0 = wrapped(__builtin_convertvector(left, i4), kernel_.width);
+        const i4 x1 = wrapped(x0 + 1, kernel_.width);
+        const i4 y0 = wrapped(__builtin_convertvector(low, i4), kernel_.height);
+        const i4 y1 = wrapped(y0 + 1, kernel_.height);
         const auto gather = [&](i4 column, i4 row) {
             const auto at = [&](int k) {
-                return heights[static_cast<std::size_t>(row[k]) * kernel.width +
-                               static_cast<std::size_t>(column[k])];
+                return heights_[static_cast<std::size_t>(row[k]) * kernel_.width +
+                                static_cast<std::size_t>(column[k])];
             };
-            return f4{at(0), at(1), at(2), 0};
+            return f4{at(0), at(1), at(2), at(3)};
         };
         const f4 h00 = gather(x0, y0);
         const f4 h10 = gather(x1, y0);
@@ -328,6 +465,66 @@ struct program<kernels::bark> : plain_program<kernels::bark> {
         const f4 top = h01 + (h11 - h01) * tx;
         return bottom + (top - bottom) * ty;
     }
+
+    const kernels::bark& kernel_;
+    heights_span heights_;
+    Output& output_;
+    const corner_codes& codes_;
+};
+
+template <>
+struct program<kernels::bark> : plain_program<kernels::bark> {
+    using kernel_type = kernels::bark;
+    using vertices_span = kernel_type::vertices_span;
+    using indices_span = kernel_type::indices_span;
+    using heights_span = kernel_type::heights_span;
+
+    [[nodiscard]] static std::uint64_t count(const kernel_type& kernel, range elements,
+                                             vertices_span vertices, indices_span indices,
+                                             heights_span heights) {
+        counter counted;
+        bark_splitter<counter>(kernel, heights, counted).elements(elements, vertices, indices);
+        return counted.triangles;
+    }
+
+    template <class Sink>
+    static void triangles(const kernel_type& kernel, range elements, Sink& sink,
+                          vertices_span vertices, indices_span indices, heights_span heights) {
+        writer written{sink.place(), sink.room()};
+        bark_splitter<writer>(kernel, heights, written).elements(elements, vertices, indices);
+        sink.skip(sink.room() - written.room);
+    }
+
+  private:
+    struct counter {
+        std::uint64_t triangles = 0;
+
+        [[nodiscard]] static bool wants_more() { return true; }
+        void operator()(std::span<const bark_triangle> more) { triangles += more.size(); }
+        void add(std::uint32_t more) { triangles += more; }
+    };
+
+    /// Triangles one after another, as long as there is room.
+    struct writer {
+        std::byte* to;
+        std::uint64_t room;
+
+        [[nodiscard]] bool wants_more() const { return room != 0; }
+        void operator()(std::span<const bark_triangle> more) {
+            const std::size_t count = std::min<std::uint64_t>(more.size(), room);
+            room -= count;
+            float* out = reinterpret_cast<float*>(to);
+            for (const bark_triangle& t : more.first(count)) {
+                for (const bark_point* corner : t.corners) {
+                    for (const lanes::f4& row : corner->rows) {
+                        lanes::stream(out, row);
+                        out += 4;
+                    }
+                }
+            }
+            to = reinterpret_cast<std::byte*>(out);
+        }
+    };
 };
 
 } // namespace skybark::cpu

@@ -23,7 +23,7 @@ struct device_options {
     parallel_for jobs;         ///< the caller's job system in place of our threads
     /// What the device says that it can do. Smaller values make algorithms cut their work.
     device_limits limits{std::uint64_t{1} << 46, 16, std::numeric_limits<std::uint32_t>::max(),
-                         32768};
+                         32768, std::numeric_limits<std::uint32_t>::max()};
 };
 
 class device {

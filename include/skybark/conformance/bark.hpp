@@ -160,6 +160,52 @@ void bark_twice(context<B>& c) {
     areas.near(area, expected, 1e-4);
 }
 
+/// Levels of one pass against as many passes: the same triangles, in the same order.
+template <backend B>
+void bark_levels(context<B>& c, std::uint32_t levels, padding policy) {
+    bark_input in;
+    for (int i = 0; i < 70; ++i) {
+        in.add(0.5 + 0.09 * i, 4.4 - 0.06 * i, i % 5 != 0);
+    }
+    auto one = bark_kernel();
+    bark_input now = in;
+    std::uint64_t triangles = 70;
+    for (std::uint32_t level = 0; level < levels; ++level) {
+        // The room is as if all were split; the count says what there is.
+        const auto vertices = c.put(now.vertices);
+        const auto indices = c.put(in.indices);
+        const auto heights = c.put(in.heights);
+        const auto out = c.template room<surface_vertex>(12 * triangles);
+        const auto count = c.template room<count_record>(1);
+        c.run([&](auto& r) {
+            r.expand(one, {vertices.view(), indices.view(), heights.view()},
+                     range{0, static_cast<std::uint32_t>(triangles)},
+                     triangle_list<B>{out.view(), count.view(), padding::compact});
+        });
+        triangles = c.template get<count_record>(count)[0].written;
+        now.vertices = c.template get<surface_vertex>(out);
+        now.vertices.resize(3 * triangles);
+        one.indexed = 0;
+    }
+    auto all = bark_kernel();
+    all.levels = levels;
+    const bool spare = policy == padding::degenerate;
+    const std::uint64_t room = spare ? std::uint64_t{70} * all.strips() : triangles;
+    const auto list = bark_list(c, in, all, policy, room, room);
+    comparison words = c.compare("vertices of one pass, and of many");
+    const surface_vertex nothing[3]{};
+    std::size_t at = 0;
+    for (std::size_t t = 0; t < list.size(); t += 3) {
+        if (spare && std::memcmp(&list[t], nothing, sizeof nothing) == 0) {
+            continue;
+        }
+        const bool there = at + 3 <= now.vertices.size();
+        words.same(there ? std::memcmp(&list[t], &now.vertices[at], sizeof nothing) : 1, 0);
+        at += 3;
+    }
+    words.same(static_cast<int>(at), static_cast<int>(now.vertices.size()));
+}
+
 template <backend B>
 void add_bark_cases(cases<B>& to) {
     if constexpr (expands<B, kernels::bark>) {
@@ -170,6 +216,10 @@ void add_bark_cases(cases<B>& to) {
         add("patterns_degenerate", [](C& c) { bark_patterns(c, padding::degenerate); });
         add("patterns_compact", [](C& c) { bark_patterns(c, padding::compact); });
         add("twice", bark_twice<B>);
+        add("two_levels_degenerate", [](C& c) { bark_levels(c, 2, padding::degenerate); });
+        add("two_levels_compact", [](C& c) { bark_levels(c, 2, padding::compact); });
+        add("three_levels_degenerate", [](C& c) { bark_levels(c, 3, padding::degenerate); });
+        add("three_levels_compact", [](C& c) { bark_levels(c, 3, padding::compact); });
         add("short_by_one_triangle", [](C& c) {
             bark_input in;
             for (int i = 0; i < 100; ++i) {

@@ -37,6 +37,9 @@ struct device_limits {
     std::uint64_t view_alignment = 16;  ///< offsets of views are multiples of this, bytes
     std::uint64_t max_elements = 0;     ///< the longest range that one pattern call takes
     std::uint32_t max_image_size = 0;   ///< the longest side of an image, pixels
+    /// Triangles that an element of a list best becomes in one pass, where an algorithm may choose:
+    /// few where many elements run at once, many where passes cost more than work in order.
+    std::uint32_t amplification = 4;
 };
 
 /// Bytes that crossed between host and device since the device was made.

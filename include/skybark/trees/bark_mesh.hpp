@@ -12,7 +12,10 @@
 // mesh's own vertices, under an index buffer of their own; only the others become a list. Counts
 // stay on the device. The list's room has a reserve; `update` gives more where it was too little.
 //
-// A triangle with two long edges becomes three in each pass, so long narrow ones cost more than
+// Each pass splits as many levels as the device likes to make at once
+// (device_limits::amplification), with the same result.
+//
+// A triangle with two long edges becomes three in each level, so long narrow ones cost more than
 // their area: best are meshes whose rings lie about as far apart as their corners.
 
 #include <skybark/core/backend.hpp>
@@ -20,6 +23,7 @@
 #include <skybark/trees/bark_texture.hpp>
 #include <skybark/trees/branch_mesh.hpp>
 
+#include <array>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -34,11 +38,14 @@ struct bark_options {
     float repeats_per_metre = 1.4f;   ///< of the map, along a branch
     float steepest = 0.2f;            ///< a midpoint rises by at most this much of its edge
     float rounding = 1; ///< 1: midpoints on the curve that the normals ask for; 0: on the chord
-    std::uint32_t most_passes = 6;     ///< each halves the edges; 1 … 12
-    padding policy = padding::compact; ///< degenerate: room for four times as many in each pass
+    std::uint32_t most_passes = 6;     ///< levels of splitting: each halves the edges; 1 … 12
+    padding policy = padding::compact; ///< degenerate: room for four times as many in each level
     float stretch = 1.25f;  ///< ≥ 1; edges that this makes longer than the threshold may be split
     float narrowest = 0.5f; ///< of the threshold, 0 … 0.75: what is narrower around stays whole
     float reserve = 0.25f;  ///< of the lists' room, for sway
+    /// m: a branch of this radius has all of the relief, a thinner one as much less as it is
+    /// thinner, in steps of a half. 0: all branches have all of it.
+    float thickness = 0;
 };
 
 namespace detail {
@@ -118,12 +125,40 @@ class long_edge_groups {
     std::vector<std::uint32_t> group_;
 };
 
+/// How many times the relief is halved for a triangle, 0 … 7, if it may ever be refined, or this.
+inline constexpr std::uint8_t not_refined = 255;
+
+/// The mean radius of the branches in each group, by how far u goes over so much of their width.
+[[nodiscard]] inline std::vector<float> radii_of_groups(std::span<const surface_vertex> vertices,
+                                                        std::span<const std::uint32_t> indices,
+                                                        long_edge_groups& groups) {
+    const std::size_t triangles = indices.size() / 3;
+    std::vector<float> sum(triangles, 0.0f), count(triangles, 0.0f);
+    for (std::size_t t = 0; t < triangles; ++t) {
+        const surface_vertex& a = vertices[indices[3 * t]];
+        const surface_vertex& b = vertices[indices[3 * t + 1]];
+        const surface_vertex& c = vertices[indices[3 * t + 2]];
+        const float width = width_around(a, b, c);
+        const float turn = std::max({a.u, b.u, c.u}) - std::min({a.u, b.u, c.u});
+        if (turn > 1e-4f && std::isfinite(width)) {
+            const std::uint32_t group = groups.of(static_cast<std::uint32_t>(t));
+            sum[group] += width / (6.2831853f * turn);
+            count[group] += 1;
+        }
+    }
+    for (std::size_t t = 0; t < triangles; ++t) {
+        sum[t] = count[t] > 0 ? sum[t] / count[t] : std::numeric_limits<float>::infinity();
+    }
+    return sum;
+}
+
 /// Which triangles may ever be refined: those with edges that sway may make longer than the
 /// threshold, unless all that hang together by such edges are too narrow around for bark to show.
-/// So an edge between one that is refined and one that is not is never split.
-[[nodiscard]] inline std::vector<bool> triangles_to_refine(std::span<const surface_vertex> vertices,
-                                                           std::span<const std::uint32_t> indices,
-                                                           const bark_options& options) {
+/// So an edge between one that is refined and one that is not, or between two with other halvings,
+/// is never split.
+[[nodiscard]] inline std::vector<std::uint8_t>
+triangles_to_refine(std::span<const surface_vertex> vertices,
+                    std::span<const std::uint32_t> indices, const bark_options& options) {
     const std::size_t triangles = indices.size() / 3;
     const float shortest = options.threshold / options.stretch;
     const auto corner = [&](std::size_t t, std::size_t k) -> const surface_vertex& {
@@ -137,11 +172,25 @@ class long_edge_groups {
             wide[groups.of(static_cast<std::uint32_t>(t))] = true;
         }
     }
-    std::vector<bool> refine(triangles);
+    std::vector<float> radius;
+    if (options.thickness > 0) {
+        radius = radii_of_groups(vertices, indices, groups);
+    }
+    const auto halvings_of = [&](std::uint32_t group) {
+        std::uint8_t halvings = 0;
+        for (float r = options.thickness;
+             !radius.empty() && halvings < 7 && r > 1.4f * radius[group]; r *= 0.5f) {
+            ++halvings;
+        }
+        return halvings;
+    };
+    std::vector<std::uint8_t> refine(triangles, not_refined);
     for (std::size_t t = 0; t < triangles; ++t) {
-        refine[t] = wide[groups.of(static_cast<std::uint32_t>(t))] &&
-                    shared::bark_pattern(corner(t, 0).position, corner(t, 1).position,
-                                         corner(t, 2).position, shortest) != 0;
+        const std::uint32_t group = groups.of(static_cast<std::uint32_t>(t));
+        if (wide[group] && shared::bark_pattern(corner(t, 0).position, corner(t, 1).position,
+                                                corner(t, 2).position, shortest) != 0) {
+            refine[t] = halvings_of(group);
+        }
     }
     return refine;
 }
@@ -163,10 +212,12 @@ class bark_mesh {
         std::uint32_t of = 0;    ///< which of the mesh's parts
         std::uint32_t first = 0; ///< triangle of that part, where it has no indices of its own
         std::uint32_t elements = 0;
-        std::optional<buffer> indices;    ///< of the triangles to refine
-        std::optional<buffer> vertices;   ///< surface_vertex, three a triangle; there after create
-        std::vector<buffer> counts;       ///< a count_record for each pass
-        std::vector<std::uint32_t> rooms; ///< triangles, after each pass
+        float relief = 0;                  ///< m
+        std::optional<buffer> indices;     ///< of the triangles to refine
+        std::optional<buffer> vertices;    ///< surface_vertex, three a triangle; there after create
+        std::vector<buffer> counts;        ///< a count_record for each pass
+        std::vector<std::uint32_t> rooms;  ///< triangles, after each pass
+        std::vector<std::uint32_t> levels; ///< of each pass
     };
 
     /// Triangles that stay as they are in the mesh's own vertices.
@@ -178,7 +229,7 @@ class bark_mesh {
 
     /// Sorts out what is to be refined and makes room. The mesh's vertices must have been made; as
     /// they are now they decide which triangles may ever be refined (edges longer than threshold /
-    /// stretch), how many passes there are, and how much room.
+    /// stretch), how many levels there are, and how much room.
     /// Errors: bad_input where the options are out of range or the texture has no texels, another
     /// number of heights than its size says, or heights that are not numbers; whatever the device
     /// says of memory.
@@ -207,10 +258,13 @@ class bark_mesh {
                 const buffer_view<B> list = view<B, surface_vertex>(
                     last ? *p.vertices : *scratch_[pass % 2], 0, std::uint64_t{3} * p.rooms[pass]);
                 const triangle_list<B> out{list, view<B>(p.counts[pass]), options_.policy};
+                kernels::bark kernel = kernel_;
+                kernel.relief = p.relief;
+                kernel.levels = p.levels[pass];
                 if (pass == 0) {
-                    record_first(to, mesh, p, kernel_, out);
+                    record_first(to, mesh, p, kernel, out);
                 } else {
-                    to.expand(kernel_, later_bindings(*scratch_[(pass - 1) % 2]),
+                    to.expand(kernel, later_bindings(*scratch_[(pass - 1) % 2]),
                               counted<B>{view<B>(p.counts[pass - 1]), p.rooms[pass - 1]}, out);
                 }
             }
@@ -361,6 +415,7 @@ class bark_mesh {
               within("number of passes", static_cast<float>(options.most_passes), 1, 12),
               within("stretch", options.stretch, 1, 1e3f),
               within("narrowest part of the threshold", options.narrowest, 0, 0.75f),
+              within("thickness of full relief", options.thickness, 0, 1e3f),
               within("reserve", options.reserve, 0, 1e2f)}) {
             if (!valid) {
                 return valid;
@@ -412,6 +467,7 @@ class bark_mesh {
             } else {
                 part whole;
                 whole.of = i;
+                whole.relief = options_.relief;
                 whole.elements = g.count / 3;
                 done = fit(device, mesh, std::move(whole));
             }
@@ -446,13 +502,16 @@ class bark_mesh {
         if (!indices) {
             return failure(indices.error());
         }
-        const std::vector<bool> refine =
+        const std::vector<std::uint8_t> refine =
             detail::triangles_to_refine(rest.vertices, *indices, options_);
-        std::vector<std::uint32_t> large, small;
+        std::array<std::vector<std::uint32_t>, 8> large; // by halvings
+        std::vector<std::uint32_t> small;
         for (std::size_t k = 0; k < 3 * refine.size(); ++k) {
-            (refine[k / 3] ? large : small).push_back((*indices)[k] - g.base_vertex);
+            const std::uint8_t halvings = refine[k / 3];
+            (halvings == detail::not_refined ? small : large[halvings])
+                .push_back((*indices)[k] - g.base_vertex);
         }
-        if (large.empty()) {
+        if (small.size() == indices->size()) {
             plain_.push_back({of, {}, g.count / 3});
             return {};
         }
@@ -463,15 +522,25 @@ class bark_mesh {
             }
             plain_.push_back({of, std::move(*made), static_cast<std::uint32_t>(small.size() / 3)});
         }
-        auto made = make_buffer<B, std::uint32_t>(device, large);
-        if (!made) {
-            return failure(made.error());
+        float relief = options_.relief;
+        for (const std::vector<std::uint32_t>& some : large) {
+            if (!some.empty()) {
+                auto made = make_buffer<B, std::uint32_t>(device, some);
+                if (!made) {
+                    return failure(made.error());
+                }
+                part refined;
+                refined.of = of;
+                refined.elements = static_cast<std::uint32_t>(some.size() / 3);
+                refined.relief = relief;
+                refined.indices = std::move(*made);
+                if (auto done = fit(device, mesh, std::move(refined)); !done) {
+                    return done;
+                }
+            }
+            relief *= 0.5f;
         }
-        part refined;
-        refined.of = of;
-        refined.elements = static_cast<std::uint32_t>(large.size() / 3);
-        refined.indices = std::move(*made);
-        return fit(device, mesh, std::move(refined));
+        return {};
     }
 
     /// Most triangles that one list may have.
@@ -487,9 +556,10 @@ class bark_mesh {
     [[nodiscard]] result<void> fit(B& device, const Mesh& mesh, part p) {
         p.counts.clear();
         p.rooms.clear();
+        p.levels.clear();
         p.vertices.reset();
         const std::uint64_t most = longest_list(device);
-        std::vector<std::uint64_t> needed;
+        std::vector<pass_size> needed;
         bool too_long = p.elements > most;
         if (!too_long) {
             auto counts = probe(device, mesh, p, most);
@@ -497,15 +567,16 @@ class bark_mesh {
                 return failure(counts.error());
             }
             needed = std::move(*counts);
-            too_long = needed.back() > most;
+            too_long = needed.back().triangles > most;
         }
         if (too_long) {
             return fit_halves(device, mesh, std::move(p));
         }
         for (std::size_t pass = 0; pass < needed.size(); ++pass) {
             const double spare = options_.policy == padding::compact ? options_.reserve : 0;
-            const auto room =
-                static_cast<std::uint64_t>(static_cast<double>(needed[pass]) * (1 + spare));
+            const auto room = static_cast<std::uint64_t>(
+                static_cast<double>(needed[pass].triangles) * (1 + spare));
+            p.levels.push_back(needed[pass].levels);
             p.rooms.push_back(static_cast<std::uint32_t>(std::min(room, most)));
             auto count = device.create_buffer(sizeof(count_record));
             if (!count) {
@@ -560,6 +631,7 @@ class bark_mesh {
         for (const bool second : {false, true}) {
             part piece;
             piece.of = p.of;
+            piece.relief = p.relief;
             piece.first = p.first + (second && !p.indices ? half : 0);
             piece.elements = second ? p.elements - half : half;
             if (p.indices) {
@@ -579,72 +651,117 @@ class bark_mesh {
         return {};
     }
 
-    /// How many triangles there are after each pass, for as many passes as edges need that are a
-    /// twentieth longer than now; ends early where a pass makes more than `most`.
+    /// What a pass splits, and how many triangles there are after it.
+    struct pass_size {
+        std::uint32_t levels = 1;
+        std::uint64_t triangles = 0;
+    };
+
+    /// How many levels a pass has, where as many are wanted. Spare triangles of degenerate padding
+    /// grow fourfold with each level, so there it is one.
+    [[nodiscard]] std::uint32_t levels_a_pass(const B& device) const {
+        std::uint32_t levels = 1;
+        for (std::uint32_t more = device.limits().amplification / 4;
+             more >= 4 && options_.policy == padding::compact; more /= 4) {
+            ++levels;
+        }
+        return std::min(levels, options_.most_passes);
+    }
+
+    /// The passes for as many levels as edges need that are a twentieth longer than now; ends early
+    /// where one makes more than `most` triangles. Each level is first counted, without a list.
     template <class Mesh>
-    [[nodiscard]] result<std::vector<std::uint64_t>> probe(B& device, const Mesh& mesh,
-                                                           const part& p, std::uint64_t most) {
-        kernels::bark kernel = kernel_;
-        kernel.threshold *= 1 / 1.05f;
+    [[nodiscard]] result<std::vector<pass_size>> probe(B& device, const Mesh& mesh, const part& p,
+                                                       std::uint64_t most) {
+        auto elements = length_now(device, mesh, p);
         auto count = device.create_buffer(sizeof(count_record));
-        if (!count) {
-            return failure(count.error());
+        if (!elements || !count) {
+            return failure(!elements ? elements.error() : count.error());
         }
-        std::vector<std::uint64_t> needed;
+        const std::uint32_t at_once = levels_a_pass(device);
+        std::vector<pass_size> passes;
         std::optional<buffer> before;
-        std::uint64_t elements = p.elements;
-        const draw_geometry<B> g = mesh.geometry(mesh.parts()[p.of]);
-        if (!p.indices && g.length) {
-            const auto length = read_count(device, *g.length.buffer, g.length.offset);
-            if (!length) {
-                return failure(length.error());
-            }
-            elements = std::min<std::uint64_t>(elements, length->written);
-        }
-        while (needed.size() < options_.most_passes) {
-            // First into room for one triangle, to learn how many there are.
+        std::uint32_t levels = 0; // of all passes
+        while (true) {
             std::optional<buffer> list;
-            std::uint64_t room = 1;
-            count_record made;
-            for (int attempt = 0; attempt < 2; ++attempt) {
-                if (auto grown = grow(device, list, room * triangle_bytes); !grown) {
-                    return failure(grown.error());
+            const auto required = [&](std::uint32_t of, std::uint64_t room) {
+                return probe_pass(device, mesh, p, before, *elements, of, *count, list, room);
+            };
+            pass_size now{0, *elements};
+            bool split = true;
+            while (split && now.levels < at_once && levels < options_.most_passes &&
+                   now.triangles <= most) {
+                const auto made = required(now.levels + 1, 1);
+                if (!made) {
+                    return failure(made.error());
                 }
-                const triangle_list<B> out{view<B>(*list), view<B>(*count), padding::compact};
-                auto done = run(device, [&](recorder& r) {
-                    if (needed.empty()) {
-                        record_first(r, mesh, p, kernel, out);
-                    } else {
-                        r.expand(kernel, later_bindings(*before),
-                                 range{0, static_cast<std::uint32_t>(elements)}, out);
-                    }
-                });
-                if (!done) {
-                    return failure(done.error());
-                }
-                const auto read = read_count(device, *count);
-                if (!read) {
-                    return failure(read.error());
-                }
-                made = *read;
-                room = std::max<std::uint64_t>(1, made.required);
-                if (made.required > most || made.required == elements) {
-                    break;
+                split = *made > now.triangles;
+                if (split) {
+                    now = {now.levels + 1, *made};
+                    ++levels;
                 }
             }
-            const bool split = made.required > elements;
-            if (split || needed.empty()) {
-                needed.push_back(options_.policy == padding::compact
-                                     ? std::uint64_t{made.required}
-                                     : 4 * (needed.empty() ? p.elements : needed.back()));
+            if (now.levels != 0 || passes.empty()) {
+                const std::uint64_t slots =
+                    4 * (passes.empty() ? std::uint64_t{p.elements} : passes.back().triangles);
+                passes.push_back({std::max(1u, now.levels),
+                                  options_.policy == padding::compact ? now.triangles : slots});
             }
-            if (!split || made.required > most || needed.back() > most) {
-                break;
+            if (!split || levels == options_.most_passes || now.triangles > most ||
+                passes.back().triangles > most) {
+                return passes;
             }
-            elements = made.required;
+            if (const auto made = required(now.levels, now.triangles); !made) {
+                return failure(made.error());
+            }
+            elements = now.triangles;
             before = std::move(list);
         }
-        return needed;
+    }
+
+    /// How many triangles a part has before the first pass.
+    template <class Mesh>
+    [[nodiscard]] static result<std::uint64_t> length_now(B& device, const Mesh& mesh,
+                                                          const part& p) {
+        const draw_geometry<B> g = mesh.geometry(mesh.parts()[p.of]);
+        if (p.indices || !g.length) {
+            return std::uint64_t{p.elements};
+        }
+        const auto length = read_count(device, *g.length.buffer, g.length.offset);
+        if (!length) {
+            return failure(length.error());
+        }
+        return std::uint64_t{std::min(p.elements, length->written)};
+    }
+
+    /// How many triangles a pass makes, and into `list` those for which there is room: from the
+    /// list `before`, or the mesh.
+    template <class Mesh>
+    [[nodiscard]] result<std::uint64_t>
+    probe_pass(B& device, const Mesh& mesh, const part& p, const std::optional<buffer>& before,
+               std::uint64_t elements, std::uint32_t levels, const buffer& count,
+               std::optional<buffer>& list, std::uint64_t room) const {
+        kernels::bark kernel = kernel_;
+        kernel.relief = p.relief;
+        kernel.threshold *= 1 / 1.05f;
+        kernel.levels = levels;
+        if (auto grown = grow(device, list, room * triangle_bytes); !grown) {
+            return failure(grown.error());
+        }
+        const triangle_list<B> out{view<B>(*list), view<B>(count), padding::compact};
+        auto done = run(device, [&](recorder& r) {
+            if (!before) {
+                record_first(r, mesh, p, kernel, out);
+            } else {
+                r.expand(kernel, later_bindings(*before),
+                         range{0, static_cast<std::uint32_t>(elements)}, out);
+            }
+        });
+        if (!done) {
+            return failure(done.error());
+        }
+        const auto made = read_count(device, count);
+        return made ? result<std::uint64_t>(made->required) : failure(made.error());
     }
 
     template <class Mesh>
