@@ -137,12 +137,19 @@ result<atomic_file> atomic_file::create(const std::string& path) {
     constexpr int most_attempts = 100; // leftovers of a process with the same number
     for (int attempt = 0; attempt < most_attempts && file.descriptor_ < 0; ++attempt) {
         const std::string name = temporary_name(*target, attempt);
+        // Noted before it is there, so that no signal comes in between.
+        const int noted = note_unfinished(name);
         file.descriptor_ = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (file.descriptor_ >= 0) {
             file.target_ = *target;
             file.temporary_ = name;
-            file.slot_ = note_unfinished(name);
-        } else if (errno != EEXIST) {
+            file.slot_ = noted;
+            continue;
+        }
+        const int error = errno;
+        forget_unfinished(noted);
+        errno = error;
+        if (error != EEXIST) {
             break;
         }
     }

@@ -169,7 +169,10 @@ glm::vec4 tangent_of(const surface_vertex& v) {
     const glm::vec3 n = normal_of(v);
     const glm::vec3 axis = std::abs(n.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1);
     const glm::vec3 any = glm::normalize(glm::cross(axis, n));
-    return {unit_or(glm::vec3(v.tangent), any), v.tangent.w < 0 ? -1.0f : 1.0f};
+    // Where surfaces join, normals and tangents are each their own neighbours' mean.
+    const float lean = glm::dot(glm::vec3(v.tangent), n);
+    const glm::vec3 level = glm::vec3(v.tangent) - (std::abs(lean) < 1e-5f ? 0 : lean) * n;
+    return {unit_or(level, any), v.tangent.w < 0 ? -1.0f : 1.0f};
 }
 
 /// Weights of 0 belong to joint 0, and no joint counts twice: validators want that.

@@ -26,7 +26,8 @@ inline constexpr std::size_t most_glb_joints = 65535;
 
 /// Writes a node for each mesh: positions, unit normals, unit tangents, texture coordinates, 32-bit
 /// indices. glTF's texture coordinates count from the top of an image, so v becomes 1 − v. A
-/// tangent of length 0 becomes one of those that the normal allows, and a w of 0 becomes 1.
+/// tangent of length 0 becomes one of those that the normal allows, one that leans out of the
+/// surface is laid into it, and a w of 0 becomes 1.
 /// Meshes with carriers hang on one skin, whose joints are nodes under their parents; the poses
 /// become an animation of their rotations, and of translations where a base leaves its parent. Keys
 /// are joined by straight lines (LINEAR). Textures are PNG inside the file. Meshes without

@@ -18,6 +18,7 @@
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/matrix.hpp>
+#include <optional>
 
 namespace skybark::picture {
 
@@ -26,6 +27,8 @@ struct picture_options {
     std::uint32_t height = 800;
     std::uint32_t supersampling = 3; ///< samples a pixel in each direction
     bool skeleton = false;           ///< plain wood in place of bark
+    std::optional<glm::vec3> eye;    ///< m; absent: where all of it is seen from
+    std::optional<glm::vec3> target; ///< m; with an eye
     double sun_azimuth = 262;        ///< degrees from north, clockwise
     double sun_elevation = 38;       ///< degrees
     float exposure = 0.046f;
@@ -45,13 +48,15 @@ inline constexpr float field = 0.5934119f; ///< rad, vertical: 34 degrees
     const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
     const float reach = std::max(tall, across / aspect) * 1.12f;
     const float distance = reach / std::tan(field * 0.5f) + across;
-    const glm::vec3 eye =
-        glm::vec3(centre.x, low.y, centre.z) +
-        glm::vec3(0.30f * distance, std::max(0.62f * tall, 0.05f), 0.95f * distance);
-    const glm::vec3 target(centre.x, centre.y - 0.10f * tall, centre.z);
-    const glm::mat4 look = glm::lookAtRH(eye, target, glm::vec3(0, 1, 0));
-    const glm::mat4 lens =
-        glm::perspectiveRH_ZO(field, aspect, distance * 0.02f, distance * 2000.0f);
+    const glm::vec3 away(0.30f * distance, std::max(0.62f * tall, 0.05f), 0.95f * distance);
+    const glm::vec3 eye = options.eye.value_or(glm::vec3(centre.x, low.y, centre.z) + away);
+    const glm::vec3 target =
+        options.target.value_or(glm::vec3(centre.x, centre.y - 0.10f * tall, centre.z));
+    const glm::vec3 ahead = glm::normalize(target - eye);
+    const glm::vec3 above = std::abs(ahead.y) > 0.999f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
+    const glm::mat4 look = glm::lookAtRH(eye, target, above);
+    const float near = 0.02f * (options.eye ? glm::distance(eye, target) : distance);
+    const glm::mat4 lens = glm::perspectiveRH_ZO(field, aspect, near, distance * 2000.0f);
     scene.to_clip = lens * look;
     scene.from_clip = glm::inverse(scene.to_clip);
     scene.camera = glm::vec4(eye, 0);

@@ -332,7 +332,7 @@ result<void> make_leaves(tree_job& job, const trees::species_entry* species) {
     } else {
         auto read = io::read_leaf(job.more.leaf_map);
         if (!read) {
-            return failure(read.error());
+            return fail(error_code::bad_input, read.error().message); // a device is there
         }
         job.leaf_picture = std::move(*read);
     }
@@ -368,7 +368,7 @@ result<void> dress(tree_job& job) {
     } else {
         auto read = io::read_image(job.more.bark_map);
         if (!read) {
-            return failure(read.error());
+            return fail(error_code::bad_input, read.error().message); // a device is there
         }
         job.bark = std::move(*read);
     }
@@ -499,6 +499,41 @@ io::surface_mesh as_surface(const char* name, const finished_surface& from,
     return surface;
 }
 
+/// Takes out the vertices that no triangle has: those where a closed surface has a branch's collar.
+void remove_unused(finished_surface& from) {
+    constexpr std::uint32_t unused = trees::none;
+    trees::host_mesh& mesh = from.mesh;
+    std::vector<std::uint32_t> now(mesh.vertices.size(), unused);
+    for (const std::uint32_t index : mesh.indices) {
+        now[index] = 0;
+    }
+    std::vector<std::uint32_t> place(from.places.size(), unused);
+    std::uint32_t kept = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        if (now[i] == unused) {
+            continue;
+        }
+        now[i] = kept;
+        mesh.vertices[kept] = mesh.vertices[i];
+        if (!from.carriers.empty()) {
+            from.carriers[kept] = from.carriers[i];
+        }
+        if (!from.places.empty()) {
+            // A place's number is that of the first vertex there.
+            std::uint32_t& own = place[from.places[i]];
+            own = own == unused ? kept : own;
+            from.places[kept] = own;
+        }
+        ++kept;
+    }
+    mesh.vertices.resize(kept);
+    from.carriers.resize(from.carriers.empty() ? 0 : kept);
+    from.places.resize(from.places.empty() ? 0 : kept);
+    for (std::uint32_t& index : mesh.indices) {
+        index = now[index];
+    }
+}
+
 /// Both surfaces as one, for a file that knows no materials.
 trees::host_mesh joined(const finished_tree& made) {
     trees::host_mesh all = made.wood.mesh;
@@ -513,8 +548,9 @@ trees::host_mesh joined(const finished_tree& made) {
 
 } // namespace
 
-result<void> write_mesh(const tree_job& job, const finished_tree& made, std::uint32_t frame) {
+result<void> write_mesh(const tree_job& job, finished_tree made, std::uint32_t frame) {
     const std::string name = name_of(job, frame);
+    remove_unused(made.wood);
     if (job.kind == tree_output::ply) {
         const trees::host_mesh all = joined(made);
         return io::write_ply(name, all.vertices, all.indices);

@@ -14,6 +14,16 @@
 
 namespace skybark::tool {
 
+/// What the job's pictures show.
+[[nodiscard]] inline picture::picture_options picture_of(const tree_job& job) {
+    picture::picture_options options;
+    options.width = job.common.width;
+    options.height = job.common.height;
+    options.eye = job.more.camera;
+    options.target = job.more.look_at;
+    return options;
+}
+
 /// The job's tree on a device, from frame to frame.
 template <backend B, class Mesh>
 class tree_frames {
@@ -122,9 +132,7 @@ class tree_frames {
     [[nodiscard]] result<void> draw(std::uint32_t frame) {
         job_.time.begin("draw");
         if (!painter_) {
-            picture::picture_options options;
-            options.width = job_.common.width;
-            options.height = job_.common.height;
+            const picture::picture_options options = picture_of(job_);
             auto painter = picture::tree_painter<B>::create(device_, options, job_.maps);
             if (!painter) {
                 return failure(painter.error());
@@ -319,6 +327,8 @@ template <backend B, class Mesh>
     if (job.more.bark_depth > 0 && !animated) {
         options.bark = trees::bark_options{};
         options.bark->relief = job.more.bark_depth;
+        options.bark->threshold = job.more.bark_edge;
+        options.bark->thickness = 0.15f;
         options.bark->repeats_around = static_cast<std::uint32_t>(job.maps.bark_around);
         options.bark->repeats_per_metre = job.maps.bark_along;
         options.bark->policy = job.mesh.policy;
@@ -326,10 +336,7 @@ template <backend B, class Mesh>
     options.leaf_cover = static_cast<float>(job.leaf_picture.cover());
     options.sway.model = sway_model_of(job.more.sway);
     if (job.more.lod > 0) {
-        picture::picture_options picture;
-        picture.width = job.common.width;
-        picture.height = job.common.height;
-        options.view = picture::view_of(job.low, job.high, picture);
+        options.view = picture::view_of(job.low, job.high, picture_of(job));
         options.view.error *= job.more.lod;
         options.view.thin *= job.more.lod;
         options.leaves.form = trees::mesh_form::list;

@@ -81,9 +81,8 @@ struct finished_tree {
 void remove_degenerate(trees::host_mesh& list);
 /// Numbers the places that vertices are at, equal positions alike.
 [[nodiscard]] std::vector<std::uint32_t> weld(std::span<const surface_vertex> vertices);
-/// Writes a mesh as frame `frame` of the job's files.
-[[nodiscard]] result<void> write_mesh(const tree_job& job, const finished_tree& made,
-                                      std::uint32_t frame);
+/// Writes a mesh as frame `frame` of the job's files, without vertices that no triangle has.
+[[nodiscard]] result<void> write_mesh(const tree_job& job, finished_tree made, std::uint32_t frame);
 /// The name of frame `frame`'s file.
 [[nodiscard]] std::string name_of(const tree_job& job, std::uint32_t frame);
 

@@ -2,16 +2,21 @@
 
 #include "options.hpp"
 
+#include <algorithm>
 #include <CLI/CLI.hpp>
+#include <glm/geometric.hpp>
 #include <io/text_input.hpp>
 
 namespace skybark::tool {
 
 namespace {
 
-constexpr double deepest_bark = 1;     // m: no tree's is
-constexpr double strongest_wind = 150; // m/s: more than any that was measured near the ground
-constexpr double longest = 86400;      // s: a day
+constexpr double deepest_bark = 1;           // m: no tree's is
+constexpr float shortest_bark_edge = 0.001f; // m
+constexpr float longest_bark_edge = 100;     // m
+constexpr double farthest = 1e6;             // m
+constexpr double strongest_wind = 150;       // m/s: more than any that was measured near the ground
+constexpr double longest = 86400;            // s: a day
 constexpr double fewest_frames_a_second = 0.001;
 constexpr double most_frames_a_second = 1000;
 constexpr std::uint32_t most_frames = 1000000;
@@ -67,9 +72,20 @@ result<void> check_bark(const tree_option_words& words, tree_options& options) {
             return good;
         }
     }
-    if (words.bark_map && options.bark_depth == 0) {
-        return contradiction("--bark-map is given, but the bark has no depth; expected --bark "
-                             "DEPTH with it, such as 0.02.");
+    for (const auto& [is_given, option] : {std::pair{words.bark_map.has_value(), "--bark-map"},
+                                           std::pair{words.bark_edge.has_value(), "--bark-edge"}}) {
+        if (is_given && options.bark_depth == 0) {
+            return contradiction(std::string(option) +
+                                 " is given, but the bark has no depth; expected --bark DEPTH "
+                                 "with it, such as 0.02.");
+        }
+    }
+    // Three times its depth shows a furrow; finer ones are the normal map's.
+    options.bark_edge = std::max(3 * options.bark_depth, shortest_bark_edge);
+    if (auto good = read("--bark-edge", words.bark_edge, shortest_bark_edge, longest_bark_edge, "m",
+                         options.bark_edge);
+        !good) {
+        return good;
     }
     return read_file_name("--bark-map", words.bark_map, options.bark_map);
 }
@@ -176,6 +192,47 @@ result<void> check_frames(const tree_option_words& words, const tree_option_cont
     return check_output(context, options);
 }
 
+/// Three numbers with commas between, if they were typed.
+result<void> read_place(std::string_view option, const std::optional<std::string>& text,
+                        std::optional<glm::vec3>& to) {
+    if (!text) {
+        return {};
+    }
+    glm::vec3 place(0);
+    std::string_view rest = *text;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t comma = rest.find(',');
+        if ((comma == std::string_view::npos) != (axis == 2)) {
+            return contradiction(std::string(option) + " is " + io::in_quotes(*text) +
+                                 "; expected X,Y,Z in m, such as 3,1.5,4.");
+        }
+        const auto value = number(option, rest.substr(0, comma), -farthest, farthest, "m");
+        if (!value) {
+            return failure(value.error());
+        }
+        place[axis] = static_cast<float>(*value);
+        rest.remove_prefix(axis < 2 ? comma + 1 : 0);
+    }
+    to = place;
+    return {};
+}
+
+result<void> check_camera(const tree_option_words& words, tree_options& options) {
+    if (words.camera.has_value() != words.look_at.has_value()) {
+        return contradiction("--camera and --look-at go together; expected both.");
+    }
+    if (auto good = read_place("--camera", words.camera, options.camera); !good) {
+        return good;
+    }
+    if (auto good = read_place("--look-at", words.look_at, options.look_at); !good) {
+        return good;
+    }
+    if (options.camera && glm::distance(*options.camera, *options.look_at) < 1e-3f) {
+        return contradiction("--camera and --look-at are the same place; expected two.");
+    }
+    return {};
+}
+
 /// The sticks of --skeleton have none of this.
 result<void> check_skeleton(const tree_options& options, const tree_option_words& words) {
     const std::pair<bool, const char*> all[] = {{options.bark_depth > 0, "--bark"},
@@ -196,6 +253,9 @@ result<void> check_skeleton(const tree_options& options, const tree_option_words
 void add_tree_options(CLI::App& to, tree_option_words& words) {
     to.add_option("--bark", words.bark, "Depth of the bark's relief in m, or off (off)")
         ->type_name("DEPTH");
+    to.add_option("--bark-edge", words.bark_edge,
+                  "Length in m above which its edges are split (three times its depth)")
+        ->type_name("M");
     to.add_option("--bark-map", words.bark_map, "Its heights, as an image (a built-in bark)")
         ->type_name("IMAGE");
     to.add_flag("--leaves", words.leaves, "With leaves (as pictures of built-in species are)");
@@ -221,6 +281,9 @@ void add_tree_options(CLI::App& to, tree_option_words& words) {
           "--lod", words.lod,
           "Level of detail: 0 is all of it, 1 what the picture can show, 2 half as fine (0)")
         ->type_name("L");
+    to.add_option("--camera", words.camera, "Where the picture is taken from, in m")
+        ->type_name("X,Y,Z");
+    to.add_option("--look-at", words.look_at, "What is in its middle, in m")->type_name("X,Y,Z");
     to.add_flag("--tubes", words.tubes,
                 "Branches as capped tubes that stick in each other (one closed surface a tree)");
 }
@@ -237,6 +300,9 @@ result<tree_options> check(const tree_option_words& words, const tree_option_con
     }
     if (good) {
         good = read("--lod", words.lod, 0, coarsest, "", options.lod);
+    }
+    if (good) {
+        good = check_camera(words, options);
     }
     if (good) {
         good = check_frames(words, context, options);

@@ -5,6 +5,7 @@
 
 #include <skybark/core/result.hpp>
 
+#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 
@@ -18,6 +19,7 @@ namespace skybark::tool {
 struct tree_option_words {
     std::optional<std::string> bark;
     std::optional<std::string> bark_map;
+    std::optional<std::string> bark_edge;
     std::optional<std::string> leaf_map;
     std::optional<std::string> sway;
     std::optional<std::string> wind;
@@ -27,6 +29,8 @@ struct tree_option_words {
     std::optional<std::string> frames;
     std::optional<std::string> fps;
     std::optional<std::string> lod;
+    std::optional<std::string> camera;
+    std::optional<std::string> look_at;
     bool leaves = false;
     bool no_leaves = false;
     bool tubes = false;
@@ -45,6 +49,7 @@ enum class frame_output {
 
 struct tree_options {
     float bark_depth = 0;       ///< m, of the relief; 0: none
+    float bark_edge = 0;        ///< m; longer edges are split
     std::string bark_map;       ///< a height map; empty: the built-in bark
     std::string leaf_map;       ///< colour with alpha; empty: the built-in leaf
     std::optional<bool> leaves; ///< nothing: as the tree has it
@@ -57,6 +62,8 @@ struct tree_options {
     double fps = 24;
     float lod = 0;      ///< 0: full detail
     bool tubes = false; ///< capped tubes that stick in each other, not one closed surface a tree
+    std::optional<glm::vec3> camera;  ///< m; nothing: where all of the tree is seen from
+    std::optional<glm::vec3> look_at; ///< m
     frame_output output = frame_output::single;
     frame_name name; ///< of numbered frames
 
