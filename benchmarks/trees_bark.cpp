@@ -1,6 +1,6 @@
 // Bark: a coarse tube in, all edges split twice, every time anew.
 //
-//   trees/bark/BACKEND/TRIANGLES       two passes into lists of so many triangles, compact
+//   trees/bark/BACKEND/TRIANGLES       two levels into lists of so many triangles, compact
 //   trees/bark_padded/BACKEND/TRIANGLES  the same with degenerate padding
 //
 // Counters: triangles and bytes written a second (of the last list), and `floor`, the fraction of

@@ -10,6 +10,8 @@
 #include <skybark/cpu/hermite_branch.hpp>
 #include <skybark/kernels/bark.hpp>
 
+#include <optional>
+
 #if defined(__GNUC__)
 
 namespace skybark::cpu {
@@ -487,11 +489,24 @@ struct program<kernels::bark> : plain_program<kernels::bark> {
         return counted.triangles;
     }
 
+    /// To count is to split, so what has been split is kept.
+    static constexpr bool keeps_what_it_counts = true;
+
+    /// Puts the triangles at `to` and says how many; none where there are as many as `room`, or
+    /// more.
+    [[nodiscard]] static std::optional<std::uint64_t>
+    keep(const kernel_type& kernel, range elements, std::byte* to, std::uint64_t room,
+         vertices_span vertices, indices_span indices, heights_span heights) {
+        writer<false> kept{to, room};
+        bark_splitter<writer<false>>(kernel, heights, kept).elements(elements, vertices, indices);
+        return kept.room != 0 ? std::optional(room - kept.room) : std::nullopt;
+    }
+
     template <class Sink>
     static void triangles(const kernel_type& kernel, range elements, Sink& sink,
                           vertices_span vertices, indices_span indices, heights_span heights) {
-        writer written{sink.place(), sink.room()};
-        bark_splitter<writer>(kernel, heights, written).elements(elements, vertices, indices);
+        writer<true> written{sink.place(), sink.room()};
+        bark_splitter<writer<true>>(kernel, heights, written).elements(elements, vertices, indices);
         sink.skip(sink.room() - written.room);
     }
 
@@ -505,6 +520,7 @@ struct program<kernels::bark> : plain_program<kernels::bark> {
     };
 
     /// Triangles one after another, as long as there is room.
+    template <bool past_the_cache>
     struct writer {
         std::byte* to;
         std::uint64_t room;
@@ -517,7 +533,11 @@ struct program<kernels::bark> : plain_program<kernels::bark> {
             for (const bark_triangle& t : more.first(count)) {
                 for (const bark_point* corner : t.corners) {
                     for (const lanes::f4& row : corner->rows) {
-                        lanes::stream(out, row);
+                        if constexpr (past_the_cache) {
+                            lanes::stream(out, row);
+                        } else {
+                            std::memcpy(out, &row, sizeof row);
+                        }
                         out += 4;
                     }
                 }

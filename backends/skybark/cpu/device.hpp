@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace skybark::cpu {
 
@@ -148,10 +149,22 @@ class device {
         }
     }
 
+    static constexpr std::uint64_t kept_blocks = 128;
+    static constexpr std::uint64_t kept_bytes = 147456; // 1,024 triangles of 48-byte vertices
+
+    /// Room for kept_blocks blocks, made when first asked for; null where there is no memory.
+    [[nodiscard]] std::byte* kept_memory() {
+        if (!kept_) {
+            kept_ = detail::allocate_zeroed(kept_blocks * kept_bytes);
+        }
+        return kept_ ? detail::align_up(kept_.get()) : nullptr;
+    }
+
     parallel_for jobs_;
     std::unique_ptr<thread_pool> pool_;
     device_limits limits_;
     device_traffic traffic_;
+    detail::memory kept_;
     raster_scratch raster_;
     std::vector<std::uint64_t> counts_;
 };
@@ -311,34 +324,80 @@ class recorder {
         const std::uint64_t room = room_for_triangles<K>(out);
         std::byte* to = out.vertices.buffer->data() + out.vertices.offset;
         // Offsets of blocks, not of elements: 1/64 of the memory, and the count is cheap.
-        constexpr std::uint32_t block = 64;
+        constexpr std::uint32_t block = keeps<K> ? 16 : 64;
         const std::uint64_t blocks = (std::uint64_t{elements.count} + block - 1) / block;
         std::vector<std::uint64_t>& offsets = device_->counts_;
         offsets.assign(blocks + 1, 0);
+        std::byte* const kept = keeps<K> && room != 0 ? device_->kept_memory() : nullptr;
+        const std::uint64_t wave =
+            kept != nullptr ? kept_blocks : std::max<std::uint64_t>(1, blocks);
         const auto elements_of = [&](std::uint64_t b) {
             const auto first = static_cast<std::uint32_t>(elements.first + b * block);
             return range{first, std::min(block, elements.first + elements.count - first)};
         };
-        device_->for_pieces(blocks, 16, [&](std::uint64_t first, std::uint64_t count) {
-            for (std::uint64_t b = first; b < first + count; ++b) {
-                offsets[b + 1] = program<K>::count(kernel, elements_of(b), spans...);
+        for (std::uint64_t begin = 0; begin < blocks; begin += wave) {
+            const std::uint64_t now = std::min(wave, blocks - begin);
+            device_->for_pieces(now, keeps<K> ? 1 : 16, [&](std::uint64_t first, std::uint64_t n) {
+                for (std::uint64_t b = first; b < first + n; ++b) {
+                    offsets[begin + b + 1] =
+                        count_block(kernel, elements_of(begin + b),
+                                    kept != nullptr ? kept + b * kept_bytes : nullptr, spans...);
+                }
+            });
+            for (std::uint64_t b = begin; b < begin + now; ++b) {
+                offsets[b + 1] += offsets[b];
             }
-        });
-        for (std::uint64_t b = 0; b < blocks; ++b) {
-            offsets[b + 1] += offsets[b];
+            device_->for_pieces(now, 1, [&](std::uint64_t first, std::uint64_t n) {
+                const std::uint64_t place = offsets[begin + first];
+                if (place >= room) {
+                    return;
+                }
+                triangle_sink<vertex> sink(to + place * 3 * sizeof(vertex), room - place);
+                for (std::uint64_t b = first; b < first + n; ++b) {
+                    const std::uint64_t count = offsets[begin + b + 1] - offsets[begin + b];
+                    if (kept != nullptr && count < kept_bytes / (3 * sizeof(vertex))) {
+                        write_kept(kept + b * kept_bytes, count, sink);
+                    } else {
+                        program<K>::triangles(kernel, elements_of(begin + b), sink, spans...);
+                    }
+                }
+                finish_streaming();
+            });
         }
-        device_->for_pieces(blocks, 1, [&](std::uint64_t first, std::uint64_t count) {
-            if (offsets[first] >= room) {
-                return;
-            }
-            triangle_sink<vertex> sink(to + offsets[first] * 3 * sizeof(vertex),
-                                       room - offsets[first]);
-            for (std::uint64_t b = first; b < first + count; ++b) {
-                program<K>::triangles(kernel, elements_of(b), sink, spans...);
-            }
-            finish_streaming();
-        });
         write_count(out, offsets[blocks], room);
+    }
+
+    /// Programs whose count costs as much as the triangles keep these from the one to the other,
+    /// block by block as far as there is room, in memory that the caches hold.
+    template <class K>
+    static constexpr bool keeps = requires {
+        requires program<K>::keeps_what_it_counts;
+    };
+    static constexpr std::uint64_t kept_blocks = device::kept_blocks;
+    static constexpr std::uint64_t kept_bytes = device::kept_bytes;
+
+    template <class K, class... Spans>
+    [[nodiscard]] static std::uint64_t count_block(const K& kernel, range elements, std::byte* kept,
+                                                   Spans... spans) {
+        if constexpr (keeps<K>) {
+            constexpr std::uint64_t most = kept_bytes / (3 * sizeof(typename K::vertex));
+            if (kept != nullptr) {
+                const std::optional<std::uint64_t> count =
+                    program<K>::keep(kernel, elements, kept, most, spans...);
+                if (count) {
+                    return *count;
+                }
+            }
+        }
+        return program<K>::count(kernel, elements, spans...);
+    }
+
+    template <class Vertex>
+    static void write_kept(const std::byte* kept, std::uint64_t count,
+                           triangle_sink<Vertex>& sink) {
+        const std::uint64_t fits = std::min(count, sink.room());
+        stream_bytes(sink.place(), kept, fits * 3 * sizeof(Vertex));
+        sink.skip(fits);
     }
 
     device* device_;

@@ -7,7 +7,9 @@
 
 namespace skybark::cpu {
 
-/// What there is without a specialisation.
+/// What there is without a specialisation. One that says `keeps_what_it_counts` also has `keep`,
+/// which writes the triangles of a few elements to memory in the caches and counts them by that:
+/// for kernels whose count costs as much as their triangles.
 template <class K>
 struct plain_program {
     /// Maps over consecutive elements.

@@ -26,6 +26,18 @@ void stream_vertex(std::byte* to, const Vertex& vertex) {
 #endif
 }
 
+/// The same for a multiple of 16 bytes. `from` is aligned, too.
+inline void stream_bytes(std::byte* to, const std::byte* from, std::size_t bytes) {
+#if defined(__SSE2__)
+    for (std::size_t i = 0; i < bytes; i += 16) {
+        _mm_stream_ps(reinterpret_cast<float*>(to + i),
+                      _mm_load_ps(reinterpret_cast<const float*>(from + i)));
+    }
+#else
+    std::memcpy(to, from, bytes);
+#endif
+}
+
 /// Makes streamed vertices visible to other threads.
 inline void finish_streaming() {
 #if defined(__SSE2__)
