@@ -94,7 +94,11 @@ template <backend B>
             const kernels::join_point& point = (*points)[i];
             const bool b = point.at_b > point.at_a && point.at_b >= point.at_c;
             const bool c = point.at_c > point.at_a && point.at_c > point.at_b;
-            all[first + p.first_point + i] = all[first + (c ? point.c : b ? point.b : point.a)];
+            // Two vertices a point: the parent's and the child's.
+            std::fill_n(all.begin() + static_cast<std::ptrdiff_t>(first + p.first_point + 2 * i), 2,
+                        vertex_carrier(all[first + (c   ? point.c
+                                                    : b ? point.b
+                                                        : point.a)]));
         }
         for (std::size_t i = 0; i < tips->size(); ++i) {
             std::fill_n(all.begin() + static_cast<std::ptrdiff_t>(first + p.first_tip + i * sides),
