@@ -264,9 +264,24 @@ class swaying_tree {
 
     /// Triangles of the last frame: waits for the device where it alone knows how many.
     [[nodiscard]] result<std::uint64_t> triangles(B& device) const {
-        std::uint64_t sum = leaves_.triangles();
+        std::uint64_t sum = 0;
+        for (const auto& p : leaves_.parts()) {
+            count_record made{p.triangles, p.triangles};
+            if (leaves_.options().form == mesh_form::list) {
+                auto done = read_back<B, count_record>(device, p.count, {&made, 1});
+                if (!done) {
+                    return failure(done.error());
+                }
+            }
+            sum += made.written;
+        }
         if (!bark_) {
-            return sum + mesh_.triangles();
+            if constexpr (requires { mesh_.made(device); }) {
+                const auto made = mesh_.made(device);
+                return made ? result<std::uint64_t>(sum + made->written) : failure(made.error());
+            } else {
+                return sum + mesh_.triangles();
+            }
         }
         const auto refined = bark_->count(device);
         if (!refined) {
