@@ -1,178 +1,12 @@
 // Meshes as other programs read them, and as each backend makes them.
 
-#include "support.hpp"
+#include "mesh_files.hpp"
 
 #include "../support/sample_qsm.hpp"
-
-#include <cmath>
-#include <limits>
-#include <sstream>
-#include <tiny_gltf.h>
 
 using namespace skybark::tests;
 
 namespace {
-
-using vector3 = std::array<double, 3>;
-
-/// What any mesh file has.
-struct read_mesh {
-    std::vector<vector3> positions;
-    std::vector<vector3> normals;
-    std::vector<std::array<double, 2>> texcoords;
-    std::vector<std::array<double, 4>> tangents;
-    std::vector<std::uint32_t> indices;
-};
-
-template <std::size_t N>
-std::array<double, N> numbers(std::istream& from) {
-    std::array<double, N> all{};
-    for (double& one : all) {
-        from >> one;
-    }
-    return all;
-}
-
-/// A reader of as much of OBJ as is needed, which shares nothing with the writer.
-read_mesh read_obj(const std::string& path) {
-    read_mesh mesh;
-    std::istringstream file(read_file(path));
-    std::string line;
-    while (std::getline(file, line)) {
-        std::istringstream words(line);
-        std::string keyword;
-        words >> keyword;
-        if (keyword == "v") {
-            mesh.positions.push_back(numbers<3>(words));
-        } else if (keyword == "vt") {
-            mesh.texcoords.push_back(numbers<2>(words));
-        } else if (keyword == "vn") {
-            mesh.normals.push_back(numbers<3>(words));
-        } else if (keyword == "f") {
-            for (int corner = 0; corner < 3; ++corner) {
-                std::uint32_t v = 0;
-                std::uint32_t t = 0;
-                std::uint32_t n = 0;
-                char slash = 0;
-                words >> v >> slash >> t >> slash >> n;
-                EXPECT_TRUE(words && v == t && v == n && v > 0) << line;
-                mesh.indices.push_back(v - 1);
-            }
-        } else {
-            EXPECT_EQ(keyword, "#") << line;
-        }
-        EXPECT_FALSE(words.fail()) << line;
-    }
-    return mesh;
-}
-
-template <std::size_t N>
-std::vector<std::array<double, N>> floats_of(const tinygltf::Model& model, int index) {
-    const tinygltf::Accessor& accessor = model.accessors.at(static_cast<std::size_t>(index));
-    EXPECT_EQ(accessor.componentType, TINYGLTF_COMPONENT_TYPE_FLOAT);
-    EXPECT_EQ(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)),
-              static_cast<int>(N));
-    const auto& view = model.bufferViews.at(static_cast<std::size_t>(accessor.bufferView));
-    EXPECT_EQ(view.byteLength, accessor.count * N * sizeof(float));
-    EXPECT_EQ(view.byteOffset % 4, 0u);
-    std::vector<std::array<double, N>> all(accessor.count);
-    const unsigned char* from = model.buffers.at(0).data.data() + view.byteOffset;
-    for (auto& element : all) {
-        for (double& one : element) {
-            float value = 0;
-            std::memcpy(&value, from, sizeof value);
-            from += sizeof value;
-            one = double{value};
-        }
-    }
-    return all;
-}
-
-read_mesh read_glb(const std::string& path) {
-    tinygltf::Model model;
-    std::string error;
-    std::string warning;
-    read_mesh mesh;
-    const bool loaded = tinygltf::TinyGLTF().LoadBinaryFromFile(&model, &error, &warning, path);
-    EXPECT_TRUE(loaded) << error;
-    EXPECT_EQ(error + warning, "");
-    if (!loaded) {
-        return mesh;
-    }
-    EXPECT_EQ(model.meshes.size(), 1u);
-    EXPECT_EQ(model.materials.size(), 1u);
-    EXPECT_EQ(model.scenes.size(), 1u);
-    const tinygltf::Primitive& primitive = model.meshes.at(0).primitives.at(0);
-    EXPECT_EQ(primitive.mode, TINYGLTF_MODE_TRIANGLES);
-    EXPECT_EQ(primitive.material, 0);
-    mesh.positions = floats_of<3>(model, primitive.attributes.at("POSITION"));
-    mesh.normals = floats_of<3>(model, primitive.attributes.at("NORMAL"));
-    mesh.tangents = floats_of<4>(model, primitive.attributes.at("TANGENT"));
-    mesh.texcoords = floats_of<2>(model, primitive.attributes.at("TEXCOORD_0"));
-    const auto& accessor = model.accessors.at(static_cast<std::size_t>(primitive.indices));
-    EXPECT_EQ(accessor.componentType, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
-    const auto& view = model.bufferViews.at(static_cast<std::size_t>(accessor.bufferView));
-    mesh.indices.resize(accessor.count);
-    std::memcpy(mesh.indices.data(), model.buffers.at(0).data.data() + view.byteOffset,
-                4 * accessor.count);
-    const auto& bounds =
-        model.accessors.at(static_cast<std::size_t>(primitive.attributes.at("POSITION")));
-    for (std::size_t k = 0; k < 3; ++k) {
-        double low = std::numeric_limits<double>::max();
-        double high = -low;
-        for (const vector3& p : mesh.positions) {
-            low = std::min(low, p[k]);
-            high = std::max(high, p[k]);
-        }
-        EXPECT_EQ(bounds.minValues.at(k), low) << "glTF wants it exact";
-        EXPECT_EQ(bounds.maxValues.at(k), high);
-    }
-    return mesh;
-}
-
-double dot(const vector3& a, const vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-vector3 minus(const vector3& a, const vector3& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-vector3 cross(const vector3& a, const vector3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-/// What holds of every surface: indices in range, unit normals that mostly agree with the winding.
-void expect_sound(const read_mesh& mesh) {
-    ASSERT_FALSE(mesh.indices.empty());
-    ASSERT_EQ(mesh.indices.size() % 3, 0u);
-    ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
-    ASSERT_EQ(mesh.texcoords.size(), mesh.positions.size());
-    std::vector<bool> used(mesh.positions.size());
-    for (const std::uint32_t i : mesh.indices) {
-        ASSERT_LT(i, mesh.positions.size());
-        used[i] = true;
-    }
-    for (std::size_t i = 0; i < used.size(); ++i) {
-        ASSERT_TRUE(used[i]) << "vertex " << i;
-        ASSERT_NEAR(dot(mesh.normals[i], mesh.normals[i]), 1, 1e-4) << "normal " << i;
-        ASSERT_TRUE(std::isfinite(dot(mesh.positions[i], mesh.positions[i]))) << i;
-    }
-    std::size_t agree = 0;
-    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
-        const vector3& a = mesh.positions[mesh.indices[i]];
-        const vector3 n = cross(minus(mesh.positions[mesh.indices[i + 1]], a),
-                                minus(mesh.positions[mesh.indices[i + 2]], a));
-        agree += dot(n, mesh.normals[mesh.indices[i]]) >= 0 ? 1 : 0;
-    }
-    EXPECT_GT(static_cast<double>(agree), 0.97 * static_cast<double>(mesh.indices.size() / 3));
-}
-
-void expect_tangents(const read_mesh& mesh) {
-    ASSERT_EQ(mesh.tangents.size(), mesh.positions.size());
-    for (std::size_t i = 0; i < mesh.tangents.size(); ++i) {
-        const vector3 t{mesh.tangents[i][0], mesh.tangents[i][1], mesh.tangents[i][2]};
-        ASSERT_NEAR(dot(t, t), 1, 1e-4) << i;
-        ASSERT_NEAR(dot(t, mesh.normals[i]), 0, 1e-3) << i;
-        ASSERT_EQ(std::abs(mesh.tangents[i][3]), 1) << i;
-    }
-}
 
 /// How many triangle corners lie where the surface has a hole: edges that no other triangle has the
 /// other way round, by position, since seams and caps have vertices of their own.
@@ -220,8 +54,11 @@ class tool_meshes : public tool {
     outcome last;
 };
 
+/// The device may have a few vertices that no triangle of a closed surface has: where collars are.
 void expect_counts(const read_mesh& mesh, const nlohmann::json& stats) {
-    EXPECT_EQ(mesh.positions.size(), stats["counts"]["vertices"].get<std::size_t>());
+    const auto vertices = stats["counts"]["vertices"].get<std::size_t>();
+    EXPECT_LE(mesh.positions.size(), vertices);
+    EXPECT_GT(mesh.positions.size(), 0.8 * static_cast<double>(vertices));
     EXPECT_EQ(mesh.indices.size(), stats["counts"]["indices"].get<std::size_t>());
 }
 
@@ -245,7 +82,18 @@ TEST_F(tool_meshes, obj_is_sound) {
     const read_mesh mesh = read_obj(in_folder("a.obj"));
     expect_counts(mesh, stats);
     expect_sound(mesh);
-    // Around the trunk its radius; the side branch ends at 1 m; the ends are flat.
+    // Around the trunk its radius; the ends are closed by tips of half a radius.
+    expect_box(mesh, {-0.1, 0, -0.1}, {1.01, 2.04, 0.1}, 0.005);
+    EXPECT_EQ(open_edges(mesh), 0u);
+}
+
+TEST_F(tool_meshes, tubes_are_sound) {
+    const auto stats = make(small_tree(), "a.obj", {"--sides", "16", "--tubes"});
+    const read_mesh mesh = read_obj(in_folder("a.obj"));
+    EXPECT_EQ(mesh.positions.size(), stats["counts"]["vertices"].get<std::size_t>());
+    EXPECT_EQ(mesh.indices.size(), stats["counts"]["indices"].get<std::size_t>());
+    expect_sound(mesh);
+    // The side branch ends at 1 m; the ends are flat.
     expect_box(mesh, {-0.1, 0, -0.1}, {1, 2, 0.1}, 0.005);
     EXPECT_EQ(open_edges(mesh), 0u);
 }
@@ -256,7 +104,7 @@ TEST_F(tool_meshes, glb_is_sound) {
     expect_counts(mesh, stats);
     expect_sound(mesh);
     expect_tangents(mesh);
-    expect_box(mesh, {-0.1, 0, -0.1}, {1, 2, 0.1}, 0.005);
+    expect_box(mesh, {-0.1, 0, -0.1}, {1.01, 2.04, 0.1}, 0.005);
 }
 
 // By the bytes of the specification, without a library.
@@ -291,7 +139,7 @@ TEST_F(tool_meshes, obj_and_glb_say_the_same) {
     const read_mesh obj = read_obj(in_folder("a.obj"));
     const read_mesh glb = read_glb(in_folder("a.glb"));
     expect_counts(obj, stats);
-    expect_sound(obj);
+    expect_sound(obj, closed_surface);
     expect_tangents(glb);
     EXPECT_EQ(obj.indices, glb.indices);
     ASSERT_EQ(obj.positions.size(), glb.positions.size());
@@ -300,7 +148,8 @@ TEST_F(tool_meshes, obj_and_glb_say_the_same) {
             // The shortest text of a float reads back as that float.
             ASSERT_EQ(static_cast<float>(obj.positions[i][k]),
                       static_cast<float>(glb.positions[i][k]));
-            ASSERT_EQ(static_cast<float>(obj.normals[i][k]), static_cast<float>(glb.normals[i][k]));
+            // What isn't quite a unit's length is, in glTF.
+            ASSERT_NEAR(obj.normals[i][k], glb.normals[i][k], 1e-6);
         }
         ASSERT_NEAR(obj.texcoords[i][0], glb.texcoords[i][0], 1e-6);
         ASSERT_NEAR(obj.texcoords[i][1], 1 - glb.texcoords[i][1], 1e-5);
@@ -308,7 +157,7 @@ TEST_F(tool_meshes, obj_and_glb_say_the_same) {
 }
 
 TEST_F(tool_meshes, ply_has_the_bytes_that_it_says) {
-    const auto stats = make(small_tree(), "a.ply");
+    const auto stats = make(small_tree(), "a.ply", {"--tubes"});
     const std::string file = read_file(folder / "a.ply");
     const std::string end = "end_header\n";
     const std::size_t header = file.find(end) + end.size();
@@ -350,8 +199,11 @@ TEST_F(tool_meshes, a_seed_grows_the_same_tree_again) {
     make("quaking_aspen", "a.obj", {"--seed", "7", "--sides", "3", "--rings", "2"});
     make("quaking_aspen", "b.obj", {"--seed", "7", "--sides", "3", "--rings", "2"});
     make("quaking_aspen", "c.obj", {"--seed", "8", "--sides", "3", "--rings", "2"});
-    EXPECT_TRUE(read_file(folder / "a.obj") == read_file(folder / "b.obj"));
-    EXPECT_FALSE(read_file(folder / "a.obj") == read_file(folder / "c.obj"));
+    const read_mesh a = read_obj(in_folder("a.obj"));
+    const read_mesh b = read_obj(in_folder("b.obj"));
+    EXPECT_EQ(a.library, "a.mtl");
+    EXPECT_TRUE(a.positions == b.positions && a.normals == b.normals && a.indices == b.indices);
+    EXPECT_FALSE(a.positions == read_obj(in_folder("c.obj")).positions);
 }
 
 namespace {
@@ -375,8 +227,9 @@ TEST_P(tool_meshes_on, agrees_with_the_cpu) {
     const std::string backend = GetParam();
     const std::string scan = scanned_tree();
     for (const words& options :
-         {words{}, words{"--sides", "5", "--rings", "9", "--frame", "rmf"}, words{"--form", "list"},
-          words{"--form", "list", "--padding", "degenerate"}, words{"--skeleton"}}) {
+         {words{}, words{"--tubes"}, words{"--sides", "5", "--rings", "9", "--frame", "rmf"},
+          words{"--form", "list"}, words{"--form", "list", "--padding", "degenerate"},
+          words{"--skeleton"}}) {
         const auto expected = make(scan, "cpu.glb", options);
         words arguments{
             "tree",      scan,   "-o", in_folder("b.glb"), "--stats", in_folder("b.json"),

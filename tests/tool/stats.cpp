@@ -37,7 +37,7 @@ expected_counts counts_of(std::uint64_t segments, std::uint64_t chains, std::uin
 } // namespace
 
 TEST_F(tool_reports, counts) {
-    const json s = stats({"-o", in_folder("a.obj")});
+    const json s = stats({"-o", in_folder("a.obj"), "--tubes"});
     const auto expected = counts_of(3, 2, 8, 4);
     EXPECT_EQ(s["command"], "tree");
     EXPECT_EQ(s["backend"], "cpu");
@@ -49,11 +49,39 @@ TEST_F(tool_reports, counts) {
     EXPECT_EQ(s["counts"]["triangles"], expected.triangles);
     EXPECT_EQ(s["counts"]["indices"], 3 * expected.triangles);
     EXPECT_EQ(s["counts"]["parts"], 2) << "tubes and caps";
+    EXPECT_EQ(s["counts"]["leaves"], 0) << "a scan has none unless it is told";
+    EXPECT_EQ(s["counts"]["frames"], 1);
+}
+
+// One closed surface of genus 0: F = 2V − 4, and the places of V are those of the tubes' rings, of
+// tips and of the collar.
+TEST_F(tool_reports, counts_of_a_closed_surface) {
+    const json s = stats({"-o", in_folder("a.obj")});
+    EXPECT_EQ(s["counts"]["parts"], 1);
+    EXPECT_EQ(s["counts"]["indices"], 3 * s["counts"]["triangles"].get<std::uint64_t>());
+    const std::string file = read_file(folder / "a.obj");
+    std::uint64_t places = 0;
+    for (std::size_t at = file.find("\nv "); at != std::string::npos;
+         at = file.find("\nv ", at + 1)) {
+        ++places;
+    }
+    EXPECT_EQ(s["counts"]["triangles"], 2 * places - 4);
+}
+
+TEST_F(tool_reports, counts_leaves_and_frames) {
+    const json s = stats({"-o", in_folder("a_%d.obj"), "--leaves", "--frames", "2"});
+    const auto leaves = s["counts"]["leaves"].get<std::uint64_t>();
+    EXPECT_EQ(leaves, 2 * 12u) << "two twigs of a dozen each";
+    EXPECT_EQ(s["counts"]["frames"], 2);
+    const json bare = stats({"-o", in_folder("a.obj"), "--no-leaves"});
+    // Two halves of five corners each: three triangles a half.
+    EXPECT_EQ(s["counts"]["triangles"],
+              bare["counts"]["triangles"].get<std::uint64_t>() + 6 * leaves);
 }
 
 TEST_F(tool_reports, counts_by_options) {
     const auto expected = counts_of(3, 2, 5, 7);
-    const json rings = stats({"-o", in_folder("a.obj"), "--sides", "5", "--rings", "7"});
+    const json rings = stats({"-o", in_folder("a.obj"), "--sides", "5", "--rings", "7", "--tubes"});
     EXPECT_EQ(rings["counts"]["vertices"], expected.vertices);
     EXPECT_EQ(rings["counts"]["triangles"], expected.triangles);
     const json list =
@@ -64,7 +92,7 @@ TEST_F(tool_reports, counts_by_options) {
                                "list", "--padding", "degenerate"});
     EXPECT_EQ(padded["counts"]["triangles"], 3 * 2 * 5 * (7 + 1));
     const json skeleton = stats({"-o", in_folder("a.obj"), "--skeleton"});
-    EXPECT_EQ(skeleton["counts"]["chains"], 3);
+    EXPECT_EQ(skeleton["counts"]["chains"], 2) << "of the tree; each segment is a stick";
     EXPECT_EQ(skeleton["counts"]["triangles"], counts_of(3, 3, 4, 2).triangles);
 }
 

@@ -34,9 +34,14 @@ TEST_F(tool_usage, helps) {
         EXPECT_TRUE(has(o.out, {"Usage: skybark " + std::string(command)}));
         EXPECT_TRUE(has(skybark({"--help"}).out, {command}));
     }
-    EXPECT_TRUE(has(skybark({"tree", "--help"}).out,
-                    {"--backend", "--device", "--size", "--seed", "--stats", "--quiet", "--sides",
-                     "--rings", "--frame", "--padding", "--form", "--skeleton", "--list", "-o"}));
+    EXPECT_TRUE(
+        has(skybark({"tree", "--help"}).out,
+            {"--backend",  "--device", "--size",  "--seed",      "--stats",     "--quiet",
+             "--sides",    "--rings",  "--frame", "--padding",   "--form",      "--skeleton",
+             "--list",     "-o",       "--bark",  "--bark-map",  "--leaves",    "--no-leaves",
+             "--leaf-map", "--sway",   "--wind",  "--wind-from", "--gusts",     "--at",
+             "--frames",   "--fps",    "--lod",   "--tubes",     "--bark-edge", "--camera",
+             "--look-at"}));
 }
 
 TEST_F(tool_usage, tells_its_version) {
@@ -100,6 +105,24 @@ TEST_F(tool_usage, refuses_names_that_it_does_not_know) {
     expect_refused({"tree", "quaking_aspen", "birch", "-o", in_folder("a.obj")}, {"birch"});
     expect_refused({"devices", "--xml"}, {"--xml"});
     expect_refused({"conformance", "--backend", "metal"}, {"metal", "cpu, opengl or vulkan"});
+}
+
+// What is typed about bark, leaves, wind and frames is checked before any work is done.
+TEST_F(tool_usage, refuses_what_trees_cannot_do) {
+    expect_value_refused("--wind", "200");
+    expect_value_refused("--sway", "rigid");
+    expect_value_refused("--bark", "deep");
+    expect_value_refused("--frames", "0");
+    const auto refused = [&](const std::string& out, words more, const words& parts) {
+        more.insert(more.begin(), {"tree", "quaking_aspen", "-o", in_folder(out)});
+        expect_refused(more, parts);
+    };
+    refused("a.png", {"--frames", "2"}, {"--frames", "%04d"});
+    refused("a.obj", {"--fps", "12"}, {"--fps", "--frames"});
+    refused("a.obj", {"--bark-map", "b.png"}, {"--bark-map", "--bark"});
+    refused("a.obj", {"--no-leaves", "--leaf-map", "l.png"}, {"--no-leaves"});
+    refused("a.obj", {"--skeleton", "--lod", "1"}, {"--skeleton", "--lod"});
+    refused("a.glb", {"--lod", "1", "--frames", "2"}, {"--lod", "--frames"});
 }
 
 TEST_F(tool_usage, keeps_its_input) {
