@@ -200,6 +200,11 @@ triangles_to_refine(std::span<const surface_vertex> vertices,
 /// The bark of a mesh with `parts()`, each with its `vertices` (a buffer of surface_vertex), and
 /// `geometry(part)`, such as branch_mesh. Parts that say `caps` pass as they are: these flat caps
 /// share no normals with the tubes that they close.
+///
+/// What may be refined is settled by `create`, at rest. An edge between a refined triangle and one
+/// that stays is shorter than threshold / stretch then; where a gale stretches it beyond the
+/// threshold (collars of twigs on boughs that bend a lot, with thresholds of a few centimetres),
+/// one side splits it and the other doesn't, and the surface opens there by the midpoint's rise.
 template <backend B>
 requires expands<B, kernels::bark>
 class bark_mesh {
