@@ -155,7 +155,7 @@ inline constexpr std::uint8_t not_refined = 255;
 /// Which triangles may ever be refined: those with edges that sway may make longer than the
 /// threshold, unless all that hang together by such edges are too narrow around for bark to show.
 /// So an edge between one that is refined and one that is not, or between two with other halvings,
-/// is never split.
+/// isn't split at rest, nor in any pose that stretches it less than that.
 [[nodiscard]] inline std::vector<std::uint8_t>
 triangles_to_refine(std::span<const surface_vertex> vertices,
                     std::span<const std::uint32_t> indices, const bark_options& options) {
