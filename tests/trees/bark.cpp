@@ -2,18 +2,13 @@
 
 #include "support/bark_surfaces.hpp"
 #include "support/closed_surface.hpp"
+#include "support/devices.hpp"
 #include "support/test_trees.hpp"
 
-#include <picture/bark_picture.hpp>
-#include <skybark/conformance/suite.hpp>
+#include <picture/tree_picture.hpp>
 #include <skybark/core/validated.hpp>
-#include <skybark/cpu/cpu.hpp>
-#include <skybark/opengl/headless.hpp>
-#include <skybark/opengl/opengl.hpp>
 #include <skybark/trees/bark_mesh.hpp>
 #include <skybark/trees/closed_mesh.hpp>
-#include <skybark/vulkan/headless.hpp>
-#include <skybark/vulkan/vulkan.hpp>
 
 #include <gtest/gtest.h>
 
@@ -24,21 +19,6 @@ using trees::bark_mesh;
 using trees::bark_options;
 
 namespace {
-
-/// Ends the test: a visible skip, or a failure where the environment asks for the backend.
-#define SKYBARK_SKIP_WITHOUT(device, name)                                                         \
-    if (!(device)) {                                                                               \
-        if (conformance::is_required(name)) {                                                      \
-            FAIL() << (device).error().message;                                                    \
-        }                                                                                          \
-        GTEST_SKIP() << (device).error().message;                                                  \
-    }
-
-result<opengl::headless> open_opengl() {
-    opengl::headless_options options;
-    options.kind = opengl::headless_kind::egl;
-    return opengl::headless::create(options);
-}
 
 const trees::bark_texture& test_texture() {
     static const trees::bark_texture texture = trees::furrowed_bark(3, 64, 48);
@@ -130,15 +110,25 @@ std::vector<std::uint8_t> picture_of(B& device) {
     const auto mesh = one_part_mesh<B>::make(device, support::closed_stem(8, 5));
     const auto bark = bark_on(device, mesh, options);
     EXPECT_TRUE(run(device, [&](auto& r) { bark.record(r, mesh); }));
-    const auto map = trees::make_bark_image(device, test_texture(), options, 0.4f);
-    EXPECT_TRUE(map);
     picture::picture_options size;
     size.width = 160;
     size.height = 120;
     size.supersampling = 1;
-    auto pixels =
-        picture::draw_bark(device, mesh, bark, *map, kernels::lit_bark{}, glm::vec3(-1, 0, -1),
-                           glm::vec3(1, 3, 1), {{0.5f, 1.6f, 4}, {0.3f, 1.5f, 0}, 40}, size);
+    size.eye = glm::vec3(0.5f, 1.6f, 4);
+    size.target = glm::vec3(0.3f, 1.5f, 0);
+    picture::surface_maps maps;
+    maps.bark_width = test_texture().width;
+    maps.bark_height = test_texture().height;
+    maps.bark = trees::normal_map(test_texture(), options.relief, 0.5f, 0.7f);
+    const auto painter = picture::tree_painter<B>::create(device, size, maps);
+    EXPECT_TRUE(painter);
+    std::vector<picture::drawable<B>> all;
+    bark.for_each_draw(mesh, [&](auto vertices, auto which) {
+        all.push_back({vertices, which, picture::look::bark});
+    });
+    const auto scene = picture::scene_around(glm::vec3(-1, 0, -1), glm::vec3(1, 3, 1), size);
+    EXPECT_TRUE(run(device, [&](auto& r) { painter->record(r, scene, all, 0, 1200); }));
+    auto pixels = painter->download(device);
     EXPECT_TRUE(pixels);
     return *std::move(pixels);
 }
@@ -167,27 +157,19 @@ void expect_the_cpus_picture(B& device) {
 } // namespace
 
 TEST(bark, opengl_draws_the_cpus_picture) {
-    auto gl = open_opengl();
-    SKYBARK_SKIP_WITHOUT(gl, "opengl");
-    expect_the_cpus_picture(gl->device());
+    support::with_device("opengl", [](auto& device) { expect_the_cpus_picture(device); });
 }
 
 TEST(bark, vulkan_draws_the_cpus_picture) {
-    auto vk = vulkan::headless::create({});
-    SKYBARK_SKIP_WITHOUT(vk, "vulkan");
-    expect_the_cpus_picture(vk->device());
+    support::with_device("vulkan", [](auto& device) { expect_the_cpus_picture(device); });
 }
 
 TEST(bark, opengl_has_the_cpus_bits) {
-    auto gl = open_opengl();
-    SKYBARK_SKIP_WITHOUT(gl, "opengl");
-    expect_the_cpus_bark(gl->device());
+    support::with_device("opengl", [](auto& device) { expect_the_cpus_bark(device); });
 }
 
 TEST(bark, vulkan_has_the_cpus_bits) {
-    auto vk = vulkan::headless::create({});
-    SKYBARK_SKIP_WITHOUT(vk, "vulkan");
-    expect_the_cpus_bark(vk->device());
+    support::with_device("vulkan", [](auto& device) { expect_the_cpus_bark(device); });
 }
 
 TEST(bark, every_edge_is_below_the_threshold_and_none_is_open) {

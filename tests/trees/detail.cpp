@@ -1,16 +1,12 @@
 // Level of detail of branches: full detail near by, within its errors farther off, without a jump
 // in between, down to a handful of triangles, and the same on every backend.
 
+#include "support/devices.hpp"
 #include "support/test_trees.hpp"
 #include "support/tree_mesh.hpp"
 
-#include <skybark/conformance/suite.hpp>
 #include <skybark/kernels/cast_shadow.hpp>
-#include <skybark/opengl/headless.hpp>
-#include <skybark/opengl/opengl.hpp>
 #include <skybark/trees/detail.hpp>
-#include <skybark/vulkan/headless.hpp>
-#include <skybark/vulkan/vulkan.hpp>
 
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
@@ -510,23 +506,11 @@ void check_against_the_cpu(B& device) {
 } // namespace
 
 TEST(detail, opengl_makes_what_the_cpu_makes) {
-    opengl::headless_options options;
-    options.kind = opengl::headless_kind::egl;
-    auto gl = opengl::headless::create(options);
-    if (!gl) {
-        ASSERT_FALSE(conformance::is_required("opengl")) << gl.error().message;
-        GTEST_SKIP() << gl.error().message;
-    }
-    check_against_the_cpu(gl->device());
+    support::with_device("opengl", [](auto& device) { check_against_the_cpu(device); });
 }
 
 TEST(detail, vulkan_makes_what_the_cpu_makes) {
-    auto vk = vulkan::headless::create({});
-    if (!vk) {
-        ASSERT_FALSE(conformance::is_required("vulkan")) << vk.error().message;
-        GTEST_SKIP() << vk.error().message;
-    }
-    check_against_the_cpu(vk->device());
+    support::with_device("vulkan", [](auto& device) { check_against_the_cpu(device); });
 }
 
 // Padding only adds triangles of zero bytes.

@@ -1,16 +1,11 @@
 // Leaves on trees: where they are placed, and the same mesh from every backend in every form.
 
+#include "support/devices.hpp"
 #include "support/test_trees.hpp"
 
 #include <skybark/conformance/leaf_reference.hpp>
-#include <skybark/conformance/suite.hpp>
-#include <skybark/cpu/cpu.hpp>
-#include <skybark/opengl/headless.hpp>
-#include <skybark/opengl/opengl.hpp>
 #include <skybark/trees/leaf_layout.hpp>
 #include <skybark/trees/leaf_mesh.hpp>
-#include <skybark/vulkan/headless.hpp>
-#include <skybark/vulkan/vulkan.hpp>
 
 #include <gtest/gtest.h>
 #include <numeric>
@@ -147,22 +142,14 @@ void check_backend(B& device) {
     }
 }
 
-template <class Headless>
-void on_headless(const char* name) {
-    auto made = Headless::create({});
-    if (!made) {
-        if (conformance::is_required(name)) {
-            FAIL() << made.error().message;
-        }
-        GTEST_SKIP() << made.error().message;
-    }
-    check_backend(made->device());
-}
-
 } // namespace
 
-TEST(leaves, opengl_has_the_cpus_leaves) { on_headless<opengl::headless>("opengl"); }
-TEST(leaves, vulkan_has_the_cpus_leaves) { on_headless<vulkan::headless>("vulkan"); }
+TEST(leaves, opengl_has_the_cpus_leaves) {
+    support::with_device("opengl", [](auto& device) { check_backend(device); });
+}
+TEST(leaves, vulkan_has_the_cpus_leaves) {
+    support::with_device("vulkan", [](auto& device) { check_backend(device); });
+}
 
 TEST(leaves, rings_and_both_paddings_are_the_same_triangles) {
     cpu::device device;

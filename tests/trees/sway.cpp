@@ -4,17 +4,12 @@
 // segment, so a beam that is to be loaded at its tip ends with a segment without length.
 
 #include "support/allocations.hpp"
+#include "support/devices.hpp"
 #include "support/random.hpp"
 #include "support/test_trees.hpp"
 
-#include <skybark/conformance/suite.hpp>
 #include <skybark/core/validated.hpp>
-#include <skybark/cpu/cpu.hpp>
-#include <skybark/opengl/headless.hpp>
-#include <skybark/opengl/opengl.hpp>
 #include <skybark/trees/sway.hpp>
-#include <skybark/vulkan/headless.hpp>
-#include <skybark/vulkan/vulkan.hpp>
 
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
@@ -900,29 +895,13 @@ void expect_like_the_cpu(B& device, int dynamic_frames) {
     }
 }
 
-void check_opengl(int frames) {
-    opengl::headless_options options;
-    options.kind = opengl::headless_kind::egl;
-    auto gl = opengl::headless::create(options);
-    if (!gl) {
-        ASSERT_FALSE(conformance::is_required("opengl")) << gl.error().message;
-        GTEST_SKIP() << gl.error().message;
-    }
-    expect_like_the_cpu(gl->device(), frames);
-}
-
-void check_vulkan(int frames) {
-    auto vk = vulkan::headless::create({});
-    if (!vk) {
-        ASSERT_FALSE(conformance::is_required("vulkan")) << vk.error().message;
-        GTEST_SKIP() << vk.error().message;
-    }
-    expect_like_the_cpu(vk->device(), frames);
+void check(const std::string& backend, int frames) {
+    support::with_device(backend, [&](auto& device) { expect_like_the_cpu(device, frames); });
 }
 
 } // namespace
 
-TEST(sway, opengl_agrees_with_the_cpu) { check_opengl(60); }
-TEST(sway, vulkan_agrees_with_the_cpu) { check_vulkan(60); }
-TEST(sway, opengl_agrees_with_the_cpu_after_600_frames_slow) { check_opengl(600); }
-TEST(sway, vulkan_agrees_with_the_cpu_after_600_frames_slow) { check_vulkan(600); }
+TEST(sway, opengl_agrees_with_the_cpu) { check("opengl", 60); }
+TEST(sway, vulkan_agrees_with_the_cpu) { check("vulkan", 60); }
+TEST(sway, opengl_agrees_with_the_cpu_after_600_frames_slow) { check("opengl", 600); }
+TEST(sway, vulkan_agrees_with_the_cpu_after_600_frames_slow) { check("vulkan", 600); }

@@ -1,18 +1,13 @@
 // Wind: what the tables say against closed forms, what the device makes of them against sums in
 // double, and the spectra, coherence and loads that come out.
 
+#include "support/devices.hpp"
 #include "support/random.hpp"
 #include "support/test_trees.hpp"
 
 #include <skybark/conformance/null_backend.hpp>
-#include <skybark/conformance/suite.hpp>
 #include <skybark/core/validated.hpp>
-#include <skybark/cpu/cpu.hpp>
-#include <skybark/opengl/headless.hpp>
-#include <skybark/opengl/opengl.hpp>
 #include <skybark/trees/wind.hpp>
-#include <skybark/vulkan/headless.hpp>
-#include <skybark/vulkan/vulkan.hpp>
 
 #include <complex>
 #include <cstdio>
@@ -358,36 +353,6 @@ const trees::skeleton& tree() {
     static const trees::skeleton grown = support::grown_trees().front().skeleton;
     return grown;
 }
-
-// ---- devices ------------------------------------------------------------------------------------
-
-/// A device for a test, or why there is none.
-template <class Headless, class Options>
-std::unique_ptr<Headless> open(const char* name, Options options, std::string& why) {
-    auto made = Headless::create(std::move(options));
-    if (!made) {
-        why = std::string(name) + ": " + made.error().message;
-        return nullptr;
-    }
-    return std::make_unique<Headless>(std::move(*made));
-}
-std::unique_ptr<opengl::headless> open_opengl(std::string& why) {
-    opengl::headless_options options;
-    options.kind = opengl::headless_kind::egl;
-    return open<opengl::headless>("opengl", options, why);
-}
-std::unique_ptr<vulkan::headless> open_vulkan(std::string& why) {
-    return open<vulkan::headless>("vulkan", vulkan::headless_options{}, why);
-}
-
-/// Ends the test: a visible skip, or a failure where the environment asks for the backend.
-#define SKYBARK_SKIP_WITHOUT(device, name, why)                                                    \
-    if (!(device)) {                                                                               \
-        if (conformance::is_required(name)) {                                                      \
-            FAIL() << (why);                                                                       \
-        }                                                                                          \
-        GTEST_SKIP() << (why);                                                                     \
-    }
 
 /// Places about a small wood.
 std::vector<vec3> wood(std::uint32_t count) {
@@ -1041,17 +1006,11 @@ TEST(wind, calls_are_valid_and_nothing_is_no_trouble) {
 }
 
 TEST(wind, opengl_has_the_same_wind) {
-    std::string why;
-    const auto gl = open_opengl(why);
-    SKYBARK_SKIP_WITHOUT(gl, "opengl", why);
-    check_backend(gl->device());
+    support::with_device("opengl", [](auto& device) { check_backend(device); });
 }
 
 TEST(wind, vulkan_has_the_same_wind) {
-    std::string why;
-    const auto vk = open_vulkan(why);
-    SKYBARK_SKIP_WITHOUT(vk, "vulkan", why);
-    check_backend(vk->device());
+    support::with_device("vulkan", [](auto& device) { check_backend(device); });
 }
 
 // The tables of docs/wind.md.

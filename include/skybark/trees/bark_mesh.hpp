@@ -857,21 +857,4 @@ class bark_mesh {
     std::vector<plain_part> plain_;
 };
 
-/// The image that lit_bark draws with: a texture's normal map with the heights in its alpha, for
-/// repeats as the options have them on a branch of this radius.
-template <backend B>
-[[nodiscard]] result<typename B::image> make_bark_image(B& device, const bark_texture& texture,
-                                                        const bark_options& options, float radius) {
-    auto image = device.create_image({texture.width, texture.height, image_format::rgba8});
-    if (!image) {
-        return image;
-    }
-    const float around = 6.2831853f * radius / static_cast<float>(options.repeats_around);
-    const auto texels = normal_map(texture, options.relief, around, 1 / options.repeats_per_metre);
-    if (auto done = device.upload(*image, std::as_bytes(std::span(texels))); !done) {
-        return failure(done.error());
-    }
-    return image;
-}
-
 } // namespace skybark::trees
