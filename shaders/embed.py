@@ -27,6 +27,11 @@ OPENGL = [
     ("kernel_ring", "expand.vert"),
     ("kernel_strip", "strips.geom"),
     ("kernel_ring", "rings.geom"),
+    ("kernel_voxel", "voxels.comp"),
+    ("kernel_slab", "accumulate.comp"),
+    ("kernel_slab", "slabs.vert"),
+    ("kernel_slab", "slabs.geom"),
+    ("kernel_slab", "slabs.frag"),
     ("kernel_fragment", "draw.vert"),
     ("kernel_fragment", "draw.frag"),
 ]
@@ -36,6 +41,8 @@ VULKAN = [
     ("kernel_strip", "strip_counts.comp"),
     ("kernel_strip", "strips.comp"),
     ("kernel_ring", "rings.comp"),
+    ("kernel_voxel", "voxels.comp"),
+    ("kernel_slab", "accumulate.comp"),
     ("kernel_fragment", "draw.vert"),
     ("kernel_fragment", "draw.frag"),
 ]

@@ -47,3 +47,18 @@ struct segment_load {
     vec3 force;
     float drag;
 };
+struct cloud_particle {
+    vec3 position;
+    float radius;
+    float optical_depth;
+    float albedo;
+    float reserved0;
+    float reserved1;
+};
+struct light_grid {
+    vec4 anchor;
+    vec4 row_x;
+    vec4 row_y;
+    vec4 row_z;
+    vec4 voxel;
+};

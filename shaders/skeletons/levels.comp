@@ -3,6 +3,7 @@
 // are coherent, because what one range wrote the next one reads through another binding.
 #define readonly coherent readonly
 #define writeonly coherent writeonly
+#define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 256) in;
 #include KERNEL
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };

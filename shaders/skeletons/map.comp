@@ -1,5 +1,6 @@
 #version 450
 // map: one invocation an element. More than 65,535 groups go into the second dimension.
+#define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 64) in;
 #include KERNEL
 #include "length.glsl"

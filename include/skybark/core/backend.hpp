@@ -2,8 +2,9 @@
 // The backend contract: what an algorithm may ask of a device, and what it may rely on.
 //
 // A backend is a type with a buffer, an image and a recorder. A recorder appends patterns (`map`,
-// `expand`, `expand_rings`, `draw`, and the copies between them) to a stream that the device runs
-// in order: what one pattern wrote, the next one sees. Nothing waits for the host in between.
+// `expand`, `expand_rings`, `draw`, `sort`, `scan`, and the copies between them) to a stream that
+// the device runs in order: what one pattern wrote, the next one sees. Nothing waits for the host
+// in between. A backend with volumes adds `accumulate`, `map_voxels`, and scans along their axes.
 //
 // What holds on every backend:
 //  - Order. Output comes in input order, then strip, then triangle. Two backends' results compare
@@ -14,6 +15,9 @@
 //  - Padding. `padding::degenerate` gives every element strips() · strip_triangles() triangles in a
 //    row; those that it does not have follow, strip by strip, as triangles whose three vertices are
 //    all zero bytes. `padding::compact` leaves them out.
+//  - Sums. `accumulate` adds whole numbers, so that neither the order of the elements nor the
+//    threads that add them change a bit; a caller keeps every sum within an int32. A `scan` of
+//    whole numbers is exact as well; one of floats goes from voxel to voxel, in order.
 //  - Errors. A recorder that cannot go on remembers the first error, ignores what follows, and
 //    gives the error at submit. A lost device answers every call with error_code::device_lost.
 //  - Misuse (a view outside its buffer, a kernel given too few images) is not an error value. It is
@@ -40,6 +44,10 @@ struct device_limits {
     /// Triangles that an element of a list best becomes in one pass, where an algorithm may choose:
     /// few where many elements run at once, many where passes cost more than work in order.
     std::uint32_t amplification = 4;
+    std::uint32_t max_volume_size = 0; ///< the longest side of a volume, voxels; 0: no volumes
+    bool filters_float32 = true;       ///< `sample` is trilinear on volume_format::float32
+    /// A bit for each accumulate_route that there is.
+    std::uint32_t accumulate_routes = 1;
 };
 
 /// Bytes that crossed between host and device since the device was made.
@@ -62,6 +70,28 @@ struct image_description {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     image_format format = image_format::rgba8;
+};
+
+enum class volume_format {
+    int32,   ///< to accumulate in and to scan
+    float32, ///< to scan, load, sample, and store from kernels
+    float16, ///< made from the others by `scan`; to load and sample
+};
+
+[[nodiscard]] constexpr std::size_t bytes_per_voxel(volume_format format) noexcept {
+    return format == volume_format::float16 ? 2 : 4;
+}
+
+/// Voxels in memory, here and in uploads and downloads: x runs fastest, then y, then z.
+struct volume_description {
+    std::uint32_t width = 0;  ///< along x
+    std::uint32_t height = 0; ///< along y
+    std::uint32_t depth = 0;  ///< along z
+    volume_format format = volume_format::float32;
+
+    [[nodiscard]] constexpr std::uint64_t size_bytes() const noexcept {
+        return std::uint64_t{width} * height * depth * bytes_per_voxel(format);
+    }
 };
 
 enum class padding {
@@ -107,6 +137,52 @@ struct triangle_list {
     buffer_view<B> vertices;
     buffer_view<B> count;
     padding policy = padding::compact;
+};
+
+/// How an `accumulate` reaches the voxels. Sums are the same; a backend without the route that is
+/// asked for (device_limits::accumulate_routes) takes `direct`.
+enum class accumulate_route {
+    direct,       ///< every slab adds to its voxels: the fastest that the backend has
+    tiles_copied, ///< drawn with blending into a large image, a tile a layer, then copied
+    tiles_drawn,  ///< the same, but the layers are drawn from the tiles
+    layers,       ///< drawn with blending straight into the layers
+};
+[[nodiscard]] constexpr std::uint32_t route_bit(accumulate_route route) noexcept {
+    return std::uint32_t{1} << static_cast<std::uint32_t>(route);
+}
+
+/// Where `accumulate` adds: a volume of int32.
+template <class B>
+struct accumulation {
+    const typename B::volume* into = nullptr;
+    bool clear = false; ///< from zero; else to what is there
+    accumulate_route route = accumulate_route::direct;
+    /// With a drawn route: every element has slabs() rectangles, the spare ones degenerate, or
+    /// (compact) just those that it has, from a geometry stage.
+    padding policy = padding::compact;
+};
+
+enum class scan_axis { none, x, y, z }; ///< none: every voxel is a sum of its own
+enum class scan_direction { ascending, descending };
+enum class scan_share {
+    whole, ///< a voxel's sum has its own value in it
+    half,  ///< half of it: the sum up to the voxel's middle
+    none,  ///< only what came before
+};
+
+/// A running sum along an axis of a volume, times `scale`, in the format of the destination.
+struct volume_scan {
+    scan_axis axis = scan_axis::y;
+    scan_direction direction = scan_direction::descending;
+    scan_share share = scan_share::whole;
+    float scale = 1;
+};
+
+/// The volumes that kernel K names, in its order.
+template <class B, names_volumes K>
+struct volume_bindings {
+    std::array<const typename B::volume*, volumes_of<K>> read{};
+    std::array<const typename B::volume*, volume_targets_of<K>> write{}; ///< of float32
 };
 
 enum class blend_mode {
@@ -215,9 +291,81 @@ concept expands_rings = backend<B> && ring_kernel<K> &&
 };
 
 template <class B, class K>
-concept draws = backend<B> && draw_kernel<K> &&
-    requires(typename B::recorder& r, const K& k, bindings<B, K> b, image_bindings<B, K> images) {
+concept draws =
+    backend<B> && draw_kernel<K> && !names_volumes<K> &&
+    requires(typename B::recorder & r, const K& k, bindings<B, K> b, image_bindings<B, K> images) {
     {r.draw(k, b, images, draw_geometry<B>{}, draw_target<B>{}, draw_state{})};
+};
+
+/// Running sums of 32-bit words, each word's own value left out, in place; the sum of all goes to
+/// the first word of `total`. Sums stop at 2^32 − 1.
+template <class B>
+concept scans = backend<B> &&
+    requires(typename B::recorder& r, buffer_view<B> words, buffer_view<B> total) {
+    {r.scan(words, total)};
+};
+
+/// Pairs of a 32-bit key and a 32-bit value, in place, by growing key; equal keys keep their order.
+/// As many pairs as both views have, or the first ones, of a number that the device knows.
+template <class B>
+concept sorts = backend<B> && requires(typename B::recorder& r, buffer_view<B> keys,
+                                       buffer_view<B> values, counted<B> pairs) {
+    {r.sort(keys, values)};
+    {r.sort(keys, values, pairs)};
+};
+
+/// Volumes: 3-D images of numbers. A new volume's content is undefined. `scan` takes int32 or
+/// float32 to float32 or float16 of the same size, or int32 to int32 (with scale 1, and without
+/// halves); the two may not be the same volume.
+template <class B>
+concept volume_backend = backend<B> && std::movable<typename B::volume> &&
+    requires(B& b, const typename B::volume& volume, typename B::recorder& r,
+             std::span<const std::byte> in, std::span<std::byte> out) {
+    { volume.description() } -> std::convertible_to<volume_description>;
+    { b.create_volume(volume_description{}) } -> std::same_as<result<typename B::volume>>;
+    { b.upload(volume, in) } -> std::same_as<result<void>>;
+    { b.download(volume, out) } -> std::same_as<result<void>>;
+    {r.scan(volume, volume, volume_scan{})};
+};
+
+/// Each element adds its slabs to a volume.
+template <class B, class K>
+concept accumulates = volume_backend<B> && slab_kernel<K> &&
+    requires(typename B::recorder& r, const K& k, bindings<B, K> b) {
+    {r.accumulate(k, b, range{}, accumulation<B>{})};
+    {r.accumulate(k, b, counted<B>{}, accumulation<B>{})};
+};
+
+/// A backend may do an accumulation from zero and the scan of it in one go, without the volume in
+/// between: `scratch` is an int32 volume of the same size that may or may not be used. The result
+/// has the same bits.
+template <class B, class K>
+concept fuses_accumulate_scan = accumulates<B, K> &&
+    requires(typename B::recorder& r, const K& k, bindings<B, K> b,
+             const typename B::volume& volume) {
+    {r.accumulate_scan(k, b, range{}, volume, volume, volume_scan{})};
+};
+
+/// A map over records that has volumes.
+template <class B, class K>
+concept maps_grids = volume_backend<B> && grid_map_kernel<K> &&
+    requires(typename B::recorder& r, const K& k, bindings<B, K> b, volume_bindings<B, K> v) {
+    {r.map(k, b, v, range{})};
+};
+
+/// Each voxel (x, y, z) below an extent once, in no order.
+template <class B, class K>
+concept maps_voxels = volume_backend<B> && voxel_kernel<K> &&
+    requires(typename B::recorder& r, const K& k, bindings<B, K> b, volume_bindings<B, K> v) {
+    {r.map_voxels(k, b, v, glm::uvec3{})};
+};
+
+/// A draw whose fragments sample volumes.
+template <class B, class K>
+concept draws_volumes = volume_backend<B> && draw_kernel<K> && names_volumes<K> &&
+    requires(typename B::recorder& r, const K& k, bindings<B, K> b, image_bindings<B, K> images,
+             volume_bindings<B, K> v) {
+    {r.draw(k, b, images, v, draw_geometry<B>{}, draw_target<B>{}, draw_state{})};
 };
 
 /// Records with `record(recorder)`, submits and waits.

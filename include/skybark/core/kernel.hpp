@@ -23,11 +23,25 @@
 //   (rings)     `ring_triangles()` triangles. `ring(i, first, count, sink, spans…)` calls
 //               `sink(vertex)` for vertices [first, first + count). `ring_index(k)` is the k-th of
 //               3 · ring_triangles() indices into one element's vertices.
+//   accumulate  Every element adds to up to `slabs()` rectangles of voxels, each in one layer of
+//               constant z. `slab_count(i, spans…)` is how many it really has; `slab(i, s, spans…)`
+//               is the s-th of them, and may reach beyond the volume. To the voxel (x, y, z) of it
+//               goes `amount(i, lateral(i, x, z, spans…), y, spans…)`, an int32: what depends on x
+//               and z alone is made once for a column. Where an element is drawn, the slabs that it
+//               does not have are degenerate.
+//   map,        A kernel that names `volumes` (≤ 4, read) and `volume_targets` (≤ 4, written) is
+//   map_voxels  given them before its spans: `map(i, grids, spans…)`. With `map_voxels`,
+//               `voxel(ivec3 at, grids, spans…)` runs once for every voxel of an extent.
+//               `grids.size(n)`, `grids.load(n, ivec3)` (inside only), `grids.sample(n, vec3)`
+//               (trilinear; 0…1 is edge to edge; clamped) read the n-th volume as a float;
+//               `grids.store(n, ivec3, float)` writes the n-th target. A volume may not be both.
 //   draw        `vec4 vertex(uint32 index, array<vec4, varyings>& out, spans…) const` returns the
 //               clip position (x right, y up, 0 ≤ z ≤ w) and
 //               `fragment_output fragment(array<vec4, varyings> const& in, vec2 pixel, bool front,
 //               images, spans…) const` the colour. `images` reads the `images` bound images:
-//               `images.size(n)`, `images.fetch(n, ivec2)`, `images.sample(n, vec2)`.
+//               `images.size(n)`, `images.fetch(n, ivec2)`, `images.sample(n, vec2)`, and, where
+//               the kernel names `volumes`, `images.volume_size(n)`, `images.volume_load(n, ivec3)`
+//               and `images.volume(n, vec3)` as above.
 
 #include <skybark/core/records.hpp>
 
@@ -42,6 +56,17 @@ namespace skybark {
 /// skeletons take for themselves.
 inline constexpr std::size_t max_kernel_bytes = 112;
 inline constexpr std::size_t max_kernel_buffers = 8;
+inline constexpr std::uint32_t max_kernel_images = 8;
+inline constexpr std::uint32_t max_kernel_volumes = 4;
+
+/// A rectangle of voxels low ≤ (x, y) < high in the layer z = slice. Empty where high ≤ low.
+struct voxel_slab {
+    glm::ivec2 low{0, 0};
+    glm::ivec2 high{0, 0};
+    std::int32_t slice = 0;
+
+    [[nodiscard]] constexpr bool operator==(const voxel_slab&) const noexcept = default;
+};
 
 template <record T>
 struct readonly {
@@ -90,6 +115,17 @@ struct any_images {
     [[nodiscard]] glm::ivec2 size(std::uint32_t) const noexcept { return {1, 1}; }
     [[nodiscard]] glm::vec4 fetch(std::uint32_t, glm::ivec2) const noexcept { return {0, 0, 0, 0}; }
     [[nodiscard]] glm::vec4 sample(std::uint32_t, glm::vec2) const noexcept { return {0, 0, 0, 0}; }
+    [[nodiscard]] glm::ivec3 volume_size(std::uint32_t) const noexcept { return {1, 1, 1}; }
+    [[nodiscard]] float volume_load(std::uint32_t, glm::ivec3) const noexcept { return 0; }
+    [[nodiscard]] float volume(std::uint32_t, glm::vec3) const noexcept { return 0; }
+};
+
+/// Stands for the backend's volumes when a concept looks at a map over records or voxels.
+struct any_grids {
+    [[nodiscard]] glm::ivec3 size(std::uint32_t) const noexcept { return {1, 1, 1}; }
+    [[nodiscard]] float load(std::uint32_t, glm::ivec3) const noexcept { return 0; }
+    [[nodiscard]] float sample(std::uint32_t, glm::vec3) const noexcept { return 0; }
+    void store(std::uint32_t, glm::ivec3, float) const noexcept {}
 };
 
 /// What a fragment function returns: a colour, or nothing (`keep == false` discards it).
@@ -120,6 +156,25 @@ concept has_ring_functions = requires(const K& k, std::uint32_t i, typename Slot
     k.ring(i, i, i, sink, spans...);
 };
 template <class K, class... Slots>
+concept has_slab_functions = requires(const K& k, std::uint32_t i, std::int32_t at, float lateral,
+                                      typename Slots::span... spans) {
+    { k.slabs() } -> std::same_as<std::uint32_t>;
+    { k.slab_count(i, spans...) } -> std::same_as<std::uint32_t>;
+    { k.slab(i, i, spans...) } -> std::same_as<voxel_slab>;
+    { k.lateral(i, at, at, spans...) } -> std::same_as<float>;
+    { k.amount(i, lateral, at, spans...) } -> std::same_as<std::int32_t>;
+};
+template <class K, class... Slots>
+concept has_grid_map_function = requires(const K& k, std::uint32_t i, const any_grids& grids,
+                                         typename Slots::span... spans) {
+    k.map(i, grids, spans...);
+};
+template <class K, class... Slots>
+concept has_voxel_function = requires(const K& k, const any_grids& grids,
+                                      typename Slots::span... spans) {
+    k.voxel(glm::ivec3{}, grids, spans...);
+};
+template <class K, class... Slots>
 concept has_draw_functions = requires(const K& k, std::uint32_t i, typename Slots::span... spans,
                                       std::array<glm::vec4, K::varyings>& out,
                                       const std::array<glm::vec4, K::varyings>& in,
@@ -138,6 +193,9 @@ struct functions<K, buffer_list<Slots...>> {
     static constexpr bool strip = has_strip_functions<K, Slots...>;
     static constexpr bool ring = has_ring_functions<K, Slots...>;
     static constexpr bool draw = has_draw_functions<K, Slots...>;
+    static constexpr bool slab = has_slab_functions<K, Slots...>;
+    static constexpr bool grid_map = has_grid_map_function<K, Slots...>;
+    static constexpr bool voxel = has_voxel_function<K, Slots...>;
 };
 } // namespace detail
 
@@ -155,6 +213,39 @@ concept ring_kernel = kernel<K> && vertex_record<typename K::vertex> &&
     detail::functions<K, typename K::buffers>::ring;
 template <class K>
 concept draw_kernel = kernel<K> && detail::functions<K, typename K::buffers>::draw;
+
+template <class K>
+concept slab_kernel = kernel<K> && detail::functions<K, typename K::buffers>::slab;
+
+/// How many volumes a kernel reads, and how many it writes: none unless it says so.
+template <class K>
+inline constexpr std::uint32_t volumes_of = [] {
+    if constexpr (requires { K::volumes; }) {
+        return std::uint32_t{K::volumes};
+    } else {
+        return std::uint32_t{0};
+    }
+}();
+template <class K>
+inline constexpr std::uint32_t volume_targets_of = [] {
+    if constexpr (requires { K::volume_targets; }) {
+        return std::uint32_t{K::volume_targets};
+    } else {
+        return std::uint32_t{0};
+    }
+}();
+template <class K>
+concept names_volumes = volumes_of<K>
++ volume_targets_of<K> != 0 &&
+    volumes_of<K> <= max_kernel_volumes&& volume_targets_of<K> <= max_kernel_volumes;
+
+/// A map over records that reads (or writes) volumes as well.
+template <class K>
+concept grid_map_kernel =
+    kernel<K> && names_volumes<K> && detail::functions<K, typename K::buffers>::grid_map;
+template <class K>
+concept voxel_kernel =
+    kernel<K> && names_volumes<K> && detail::functions<K, typename K::buffers>::voxel;
 
 /// The most triangles that one element of `k` becomes.
 template <strip_kernel K>

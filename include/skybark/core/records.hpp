@@ -112,4 +112,30 @@ struct segment_load {
 };
 static_assert(sizeof(segment_load) == 16);
 
+/// A part of a cloud: water that thins out from a centre like a Gaussian and ends at `radius`.
+struct cloud_particle {
+    glm::vec3 position{0};   ///< m
+    float radius = 0;        ///< m, > 0
+    float optical_depth = 0; ///< along a straight line through the centre, ≥ 0
+    float albedo = 1;        ///< what is scattered of what is taken out, 0…1
+    float reserved[2] = {0, 0};
+};
+static_assert(sizeof(cloud_particle) == 32);
+static_assert(offsetof(cloud_particle, radius) == 12 &&
+              offsetof(cloud_particle, optical_depth) == 16 &&
+              offsetof(cloud_particle, albedo) == 20);
+
+/// A grid of voxels in the light's frame: +y towards the sun, x, y, z right-handed. A place in the
+/// world has the voxel coordinates `cells(p) = offset + rows · (p − anchor)`, where voxel (i, j, k)
+/// reaches from i, j, k to i + 1, j + 1, k + 1.
+struct light_grid {
+    glm::vec4 anchor{0};         ///< xyz: in the middle of the cloud, m
+    glm::vec4 row_x{1, 0, 0, 0}; ///< xyz: towards growing x, one over the voxel's width (1/m);
+                                 ///< w: where the anchor is, in voxels
+    glm::vec4 row_y{0, 1, 0, 0}; ///< the same for y: xyz points to the sun
+    glm::vec4 row_z{0, 0, 1, 0}; ///< the same for z
+    glm::vec4 voxel{1, 1, 1, 0}; ///< xyz: the sides of a voxel, m; w: one quantum of attenuation
+};
+static_assert(sizeof(light_grid) == 80);
+
 } // namespace skybark

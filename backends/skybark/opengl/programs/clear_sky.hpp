@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 3251a71b00cac27467234591df489c8400c179464fdd763af6144f05cd56f9a6
+// sha256 ab1c60c9996e5a4cf17c2075edbd51879097b05e21766f80b847b0c12f48b46e
 #pragma once
 
 #include <skybark/kernels/clear_sky.hpp>
@@ -18,15 +18,26 @@ struct program<kernels::clear_sky> {
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
 #define SKYBARK_IMAGE_BINDING 16
+#define SKYBARK_VOLUME_BINDING 17
+#define SKYBARK_TARGET_BINDING 18
+#define SKYBARK_SUMS_BINDING 19
 #else
 layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexID
 #define SKYBARK_IMAGE_BINDING 0
+#define SKYBARK_VOLUME_BINDING 8
+#define SKYBARK_TARGET_BINDING 0
+#define SKYBARK_SUMS_BINDING 4
 #endif
     uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
     KERNEL_PARAMETERS
 #endif
+};
+struct voxel_slab {
+    ivec2 low;
+    ivec2 high;
+    int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -41,6 +52,12 @@ layout(location = 0) out vec4 color_out;
 #endif
 #if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
 layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+#if defined(KERNEL_VOLUMES) && (defined(SKYBARK_FRAGMENT_STAGE) || defined(SKYBARK_COMPUTE_STAGE))
+layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL_VOLUMES];
+#endif
+#if defined(KERNEL_TARGETS) && defined(SKYBARK_COMPUTE_STAGE)
+layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct surface_vertex {
     vec3 position;
@@ -89,6 +106,21 @@ struct leaf {
 struct segment_load {
     vec3 force;
     float drag;
+};
+struct cloud_particle {
+    vec3 position;
+    float radius;
+    float optical_depth;
+    float albedo;
+    float reserved0;
+    float reserved1;
+};
+struct light_grid {
+    vec4 anchor;
+    vec4 row_x;
+    vec4 row_y;
+    vec4 row_z;
+    vec4 voxel;
 };
 struct daylight_sky {
     vec4 a; // Perez' coefficients: x for Y, y for x, z for y
@@ -266,15 +298,26 @@ void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
 #define SKYBARK_IMAGE_BINDING 16
+#define SKYBARK_VOLUME_BINDING 17
+#define SKYBARK_TARGET_BINDING 18
+#define SKYBARK_SUMS_BINDING 19
 #else
 layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexID
 #define SKYBARK_IMAGE_BINDING 0
+#define SKYBARK_VOLUME_BINDING 8
+#define SKYBARK_TARGET_BINDING 0
+#define SKYBARK_SUMS_BINDING 4
 #endif
     uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
     KERNEL_PARAMETERS
 #endif
+};
+struct voxel_slab {
+    ivec2 low;
+    ivec2 high;
+    int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -289,6 +332,12 @@ layout(location = 0) out vec4 color_out;
 #endif
 #if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
 layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+#if defined(KERNEL_VOLUMES) && (defined(SKYBARK_FRAGMENT_STAGE) || defined(SKYBARK_COMPUTE_STAGE))
+layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL_VOLUMES];
+#endif
+#if defined(KERNEL_TARGETS) && defined(SKYBARK_COMPUTE_STAGE)
+layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct surface_vertex {
     vec3 position;
@@ -337,6 +386,21 @@ struct leaf {
 struct segment_load {
     vec3 force;
     float drag;
+};
+struct cloud_particle {
+    vec3 position;
+    float radius;
+    float optical_depth;
+    float albedo;
+    float reserved0;
+    float reserved1;
+};
+struct light_grid {
+    vec4 anchor;
+    vec4 row_x;
+    vec4 row_y;
+    vec4 row_z;
+    vec4 voxel;
 };
 struct daylight_sky {
     vec4 a; // Perez' coefficients: x for Y, y for x, z for y

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 4161851c68be510776779427308ec8a40b446392f2fdeee7f25b6345bcdd047b
+// sha256 6b95d44429d1b5f5044b6e39f2ab0085881357625726f4dc624dbf2dc4398bfb
 #pragma once
 
 #include <skybark/kernels/hermite_branch.hpp>
@@ -24,15 +24,26 @@ void main() { skybark_point = uint(gl_VertexID); }
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
 #define SKYBARK_IMAGE_BINDING 16
+#define SKYBARK_VOLUME_BINDING 17
+#define SKYBARK_TARGET_BINDING 18
+#define SKYBARK_SUMS_BINDING 19
 #else
 layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexID
 #define SKYBARK_IMAGE_BINDING 0
+#define SKYBARK_VOLUME_BINDING 8
+#define SKYBARK_TARGET_BINDING 0
+#define SKYBARK_SUMS_BINDING 4
 #endif
     uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
     KERNEL_PARAMETERS
 #endif
+};
+struct voxel_slab {
+    ivec2 low;
+    ivec2 high;
+    int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -47,6 +58,12 @@ layout(location = 0) out vec4 color_out;
 #endif
 #if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
 layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+#if defined(KERNEL_VOLUMES) && (defined(SKYBARK_FRAGMENT_STAGE) || defined(SKYBARK_COMPUTE_STAGE))
+layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL_VOLUMES];
+#endif
+#if defined(KERNEL_TARGETS) && defined(SKYBARK_COMPUTE_STAGE)
+layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct surface_vertex {
     vec3 position;
@@ -95,6 +112,21 @@ struct leaf {
 struct segment_load {
     vec3 force;
     float drag;
+};
+struct cloud_particle {
+    vec3 position;
+    float radius;
+    float optical_depth;
+    float albedo;
+    float reserved0;
+    float reserved1;
+};
+struct light_grid {
+    vec4 anchor;
+    vec4 row_x;
+    vec4 row_y;
+    vec4 row_z;
+    vec4 voxel;
 };
 vec3 quaternion_x(vec4 q) {
     return vec3(1.0f - 2.0f * (q.y * q.y + q.z * q.z), 2.0f * (q.x * q.y + q.w * q.z),
@@ -426,15 +458,26 @@ void main() {
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
 #define SKYBARK_IMAGE_BINDING 16
+#define SKYBARK_VOLUME_BINDING 17
+#define SKYBARK_TARGET_BINDING 18
+#define SKYBARK_SUMS_BINDING 19
 #else
 layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexID
 #define SKYBARK_IMAGE_BINDING 0
+#define SKYBARK_VOLUME_BINDING 8
+#define SKYBARK_TARGET_BINDING 0
+#define SKYBARK_SUMS_BINDING 4
 #endif
     uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
     KERNEL_PARAMETERS
 #endif
+};
+struct voxel_slab {
+    ivec2 low;
+    ivec2 high;
+    int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -449,6 +492,12 @@ layout(location = 0) out vec4 color_out;
 #endif
 #if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
 layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+#if defined(KERNEL_VOLUMES) && (defined(SKYBARK_FRAGMENT_STAGE) || defined(SKYBARK_COMPUTE_STAGE))
+layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL_VOLUMES];
+#endif
+#if defined(KERNEL_TARGETS) && defined(SKYBARK_COMPUTE_STAGE)
+layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct surface_vertex {
     vec3 position;
@@ -497,6 +546,21 @@ struct leaf {
 struct segment_load {
     vec3 force;
     float drag;
+};
+struct cloud_particle {
+    vec3 position;
+    float radius;
+    float optical_depth;
+    float albedo;
+    float reserved0;
+    float reserved1;
+};
+struct light_grid {
+    vec4 anchor;
+    vec4 row_x;
+    vec4 row_y;
+    vec4 row_z;
+    vec4 voxel;
 };
 vec3 quaternion_x(vec4 q) {
     return vec3(1.0f - 2.0f * (q.y * q.y + q.z * q.z), 2.0f * (q.x * q.y + q.w * q.z),

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 afc32b2c9af17a3db92f2d4643afa304790d7a8951f0901d7841c4bd0c123c26
+// sha256 a4b01c7c1698dc1fd0784a82fd4d0c1795cb76ca6e53e570ee4b95096567b3fb
 #pragma once
 
 #include <skybark/kernels/lit_branch.hpp>
@@ -20,15 +20,26 @@ struct program<kernels::lit_branch> {
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
 #define SKYBARK_IMAGE_BINDING 16
+#define SKYBARK_VOLUME_BINDING 17
+#define SKYBARK_TARGET_BINDING 18
+#define SKYBARK_SUMS_BINDING 19
 #else
 layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexID
 #define SKYBARK_IMAGE_BINDING 0
+#define SKYBARK_VOLUME_BINDING 8
+#define SKYBARK_TARGET_BINDING 0
+#define SKYBARK_SUMS_BINDING 4
 #endif
     uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
     KERNEL_PARAMETERS
 #endif
+};
+struct voxel_slab {
+    ivec2 low;
+    ivec2 high;
+    int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -43,6 +54,12 @@ layout(location = 0) out vec4 color_out;
 #endif
 #if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
 layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+#if defined(KERNEL_VOLUMES) && (defined(SKYBARK_FRAGMENT_STAGE) || defined(SKYBARK_COMPUTE_STAGE))
+layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL_VOLUMES];
+#endif
+#if defined(KERNEL_TARGETS) && defined(SKYBARK_COMPUTE_STAGE)
+layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct surface_vertex {
     vec3 position;
@@ -91,6 +108,21 @@ struct leaf {
 struct segment_load {
     vec3 force;
     float drag;
+};
+struct cloud_particle {
+    vec3 position;
+    float radius;
+    float optical_depth;
+    float albedo;
+    float reserved0;
+    float reserved1;
+};
+struct light_grid {
+    vec4 anchor;
+    vec4 row_x;
+    vec4 row_y;
+    vec4 row_z;
+    vec4 voxel;
 };
 struct daylight_sky {
     vec4 a; // Perez' coefficients: x for Y, y for x, z for y
@@ -289,15 +321,26 @@ void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
 #define SKYBARK_IMAGE_BINDING 16
+#define SKYBARK_VOLUME_BINDING 17
+#define SKYBARK_TARGET_BINDING 18
+#define SKYBARK_SUMS_BINDING 19
 #else
 layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexID
 #define SKYBARK_IMAGE_BINDING 0
+#define SKYBARK_VOLUME_BINDING 8
+#define SKYBARK_TARGET_BINDING 0
+#define SKYBARK_SUMS_BINDING 4
 #endif
     uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
     KERNEL_PARAMETERS
 #endif
+};
+struct voxel_slab {
+    ivec2 low;
+    ivec2 high;
+    int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -312,6 +355,12 @@ layout(location = 0) out vec4 color_out;
 #endif
 #if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
 layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+#if defined(KERNEL_VOLUMES) && (defined(SKYBARK_FRAGMENT_STAGE) || defined(SKYBARK_COMPUTE_STAGE))
+layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL_VOLUMES];
+#endif
+#if defined(KERNEL_TARGETS) && defined(SKYBARK_COMPUTE_STAGE)
+layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct surface_vertex {
     vec3 position;
@@ -360,6 +409,21 @@ struct leaf {
 struct segment_load {
     vec3 force;
     float drag;
+};
+struct cloud_particle {
+    vec3 position;
+    float radius;
+    float optical_depth;
+    float albedo;
+    float reserved0;
+    float reserved1;
+};
+struct light_grid {
+    vec4 anchor;
+    vec4 row_x;
+    vec4 row_y;
+    vec4 row_z;
+    vec4 voxel;
 };
 struct daylight_sky {
     vec4 a; // Perez' coefficients: x for Y, y for x, z for y

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 986518fa7b3c4f837356c9b87fe8ef08707b828e159370932c3fbe98dc628b61
+// sha256 d15d65a730d04e6968f39831e663676ec1337a7561e327a881921c1c2b949947
 #pragma once
 
 #include <skybark/kernels/probe_image.hpp>
@@ -20,15 +20,26 @@ struct program<kernels::probe_image> {
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
 #define SKYBARK_IMAGE_BINDING 16
+#define SKYBARK_VOLUME_BINDING 17
+#define SKYBARK_TARGET_BINDING 18
+#define SKYBARK_SUMS_BINDING 19
 #else
 layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexID
 #define SKYBARK_IMAGE_BINDING 0
+#define SKYBARK_VOLUME_BINDING 8
+#define SKYBARK_TARGET_BINDING 0
+#define SKYBARK_SUMS_BINDING 4
 #endif
     uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
     KERNEL_PARAMETERS
 #endif
+};
+struct voxel_slab {
+    ivec2 low;
+    ivec2 high;
+    int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -43,6 +54,12 @@ layout(location = 0) out vec4 color_out;
 #endif
 #if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
 layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+#if defined(KERNEL_VOLUMES) && (defined(SKYBARK_FRAGMENT_STAGE) || defined(SKYBARK_COMPUTE_STAGE))
+layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL_VOLUMES];
+#endif
+#if defined(KERNEL_TARGETS) && defined(SKYBARK_COMPUTE_STAGE)
+layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct probe_vertex {
     vec4 position;
@@ -91,15 +108,26 @@ void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
 #define SKYBARK_IMAGE_BINDING 16
+#define SKYBARK_VOLUME_BINDING 17
+#define SKYBARK_TARGET_BINDING 18
+#define SKYBARK_SUMS_BINDING 19
 #else
 layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexID
 #define SKYBARK_IMAGE_BINDING 0
+#define SKYBARK_VOLUME_BINDING 8
+#define SKYBARK_TARGET_BINDING 0
+#define SKYBARK_SUMS_BINDING 4
 #endif
     uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
     KERNEL_PARAMETERS
 #endif
+};
+struct voxel_slab {
+    ivec2 low;
+    ivec2 high;
+    int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -114,6 +142,12 @@ layout(location = 0) out vec4 color_out;
 #endif
 #if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
 layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+#if defined(KERNEL_VOLUMES) && (defined(SKYBARK_FRAGMENT_STAGE) || defined(SKYBARK_COMPUTE_STAGE))
+layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL_VOLUMES];
+#endif
+#if defined(KERNEL_TARGETS) && defined(SKYBARK_COMPUTE_STAGE)
+layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct probe_vertex {
     vec4 position;

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 89e161ec2603b512301fd00dad5f0e617c7c897d81f62278eaa661446b99fd89
+// sha256 3781338205f21ae7334503ace9ec9e8862337acbd6632cf87371812afd54ee7f
 #pragma once
 
 #include <skybark/kernels/probe_map.hpp>
@@ -12,21 +12,33 @@ template <>
 struct program<kernels::probe_map> {
     static constexpr std::string_view map_comp = R"glsl(#version 450
 #define SKYBARK_OPENGL
+#define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 64) in;
 #define KERNEL_PARAMETERS uint factor; uint offset; float scale; float bias;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
 #define SKYBARK_IMAGE_BINDING 16
+#define SKYBARK_VOLUME_BINDING 17
+#define SKYBARK_TARGET_BINDING 18
+#define SKYBARK_SUMS_BINDING 19
 #else
 layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexID
 #define SKYBARK_IMAGE_BINDING 0
+#define SKYBARK_VOLUME_BINDING 8
+#define SKYBARK_TARGET_BINDING 0
+#define SKYBARK_SUMS_BINDING 4
 #endif
     uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
     KERNEL_PARAMETERS
 #endif
+};
+struct voxel_slab {
+    ivec2 low;
+    ivec2 high;
+    int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -41,6 +53,12 @@ layout(location = 0) out vec4 color_out;
 #endif
 #if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
 layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+#if defined(KERNEL_VOLUMES) && (defined(SKYBARK_FRAGMENT_STAGE) || defined(SKYBARK_COMPUTE_STAGE))
+layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL_VOLUMES];
+#endif
+#if defined(KERNEL_TARGETS) && defined(SKYBARK_COMPUTE_STAGE)
+layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 layout(std430, binding = 0) readonly buffer numbers_buffer { uint numbers[]; };
 layout(std430, binding = 1) readonly buffer vectors_buffer { vec4 vectors[]; };
@@ -67,21 +85,33 @@ void main() {
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
 #define writeonly coherent writeonly
+#define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 256) in;
 #define KERNEL_PARAMETERS uint factor; uint offset; float scale; float bias;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
 #define SKYBARK_IMAGE_BINDING 16
+#define SKYBARK_VOLUME_BINDING 17
+#define SKYBARK_TARGET_BINDING 18
+#define SKYBARK_SUMS_BINDING 19
 #else
 layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexID
 #define SKYBARK_IMAGE_BINDING 0
+#define SKYBARK_VOLUME_BINDING 8
+#define SKYBARK_TARGET_BINDING 0
+#define SKYBARK_SUMS_BINDING 4
 #endif
     uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
     KERNEL_PARAMETERS
 #endif
+};
+struct voxel_slab {
+    ivec2 low;
+    ivec2 high;
+    int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -96,6 +126,12 @@ layout(location = 0) out vec4 color_out;
 #endif
 #if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
 layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+#if defined(KERNEL_VOLUMES) && (defined(SKYBARK_FRAGMENT_STAGE) || defined(SKYBARK_COMPUTE_STAGE))
+layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL_VOLUMES];
+#endif
+#if defined(KERNEL_TARGETS) && defined(SKYBARK_COMPUTE_STAGE)
+layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 layout(std430, binding = 0) readonly buffer numbers_buffer { uint numbers[]; };
 layout(std430, binding = 1) readonly buffer vectors_buffer { vec4 vectors[]; };

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c2d280b6d1889a2a1edcebcc4baa24c0e1ee25e6bce7b3f423dc14488fef857d
+// sha256 5dd64f31c9c01e3065700dc7a96886dfc644e5344224d4810cd9bd54d1f1cd71
 #pragma once
 
 #include <skybark/kernels/bark.hpp>

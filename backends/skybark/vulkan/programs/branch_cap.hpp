@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 fa858f16e960b9c74c41c1bc2250973b0082ed711c55ff9ecc61cd10b4babfe1
+// sha256 801297c31b44c3d9b8ad02190f23f5fb084632398c27bb353587f8871dce7e82
 #pragma once
 
 #include <skybark/kernels/branch_cap.hpp>

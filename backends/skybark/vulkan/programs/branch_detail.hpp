@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 13388005cc56715c9e6b9ff623a36af45dd2948c740eb4a226bf6eec1ef7ad37
+// sha256 3bee553ff6c5a96c65b672dab47ca0d25966e3b2bf270f0c3f616f48b57b5d4a
 #pragma once
 
 #include <skybark/kernels/branch_detail.hpp>

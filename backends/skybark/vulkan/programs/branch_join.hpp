@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 59f063e21bd0c2438d8b9906b5e545ab153202501ef62bb917a72bd7feb8838c
+// sha256 78ed8f9674be05e5d4ae2aedc4b69ec6b31200da5881b4cba234b37b8f0f166a
 #pragma once
 
 #include <skybark/kernels/branch_join.hpp>

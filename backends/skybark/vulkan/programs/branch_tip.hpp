@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 419722e2e07ca6d66f385ef70e36e397ae3e70297606fe4c549995a250883098
+// sha256 603d270484eeb44600c7b9f42a1f407e747af63d3f336a454c2b6487c71c709f
 #pragma once
 
 #include <skybark/kernels/branch_tip.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 527443eee1e3878820f973db8046bad4bf32e3a66717b84086c6fa191206eef0
+// sha256 b134103a3225c5b88931914014f63fdfd840781169545f09e0120bf1ab4b47d8
 #pragma once
 
 #include <skybark/kernels/cast_leaf_shadow.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5b19f14f8e051dae9b664e07c73befc8327d9b4b57f6f6530af0f3d603bb8c8d
+// sha256 4e49ccfaf7b1c0705a46652fa6c7956f356f8995080d3f31322b20f165673015
 #pragma once
 
 #include <skybark/kernels/cast_shadow.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 82b64d37506c13d6c449cff9b151c2580a0e3293b268942c63083e4ef3123c32
+// sha256 fd292bc138f7a48c26792036363106a68d5ab105a53657163c1f861d48700d56
 #pragma once
 
 #include <skybark/kernels/clear_sky.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1410536c93354dd470b62fdc4203832e386d00ddc0778455d46f64e19ef702ac
+// sha256 673a986464927373e73424706d45cb042f7accdfab272a00e9606827cf663d88
 #pragma once
 
 #include <skybark/kernels/detailed_branch.hpp>

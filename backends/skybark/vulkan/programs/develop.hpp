@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 8130996effef14a9314bed4221b3497b17737693907efa89b0c2ff644d39bf6b
+// sha256 54a77b5861482151db72d789119c292de10ba67467f049fcb59f0de62902abd6
 #pragma once
 
 #include <skybark/kernels/develop.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 477f7a40233b487cb1bbfee89692317f5629db6225ae36fdc03f144ae4d722ad
+// sha256 5e5d16b0c65e7d935450fb042e45b25bfe91d0225f379c180426689fb9c977d7
 #pragma once
 
 #include <skybark/kernels/grid_wind.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1d49caaeeaff89025c4cee849f2af8040fbb06456f16c2005f0a5c17ce0c48aa
+// sha256 f337f0bf35f9953e3dfb82e4b17380005204fc72799a794e5d913388b1d4f2a2
 #pragma once
 
 #include <skybark/kernels/hermite_branch.hpp>

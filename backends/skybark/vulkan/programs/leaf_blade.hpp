@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 e3b66424d170fee5ba46d957aaf0e5a4afcbbf951e26f1a74104dc78b4dbd0f2
+// sha256 65d34a6eaccb4c496c9d831d7a29cde65d45cce57604a882650a93b9f6523dfd
 #pragma once
 
 #include <skybark/kernels/leaf_blade.hpp>

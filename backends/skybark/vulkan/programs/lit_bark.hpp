@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1538f28533a59d8b58b567047b0f3c42f64970d5353ac17e0910db2cc61c3c3a
+// sha256 6b14c5c7e0b775adc0d3d3604983717650ff86de295e2a190c7b1e85609b11bf
 #pragma once
 
 #include <skybark/kernels/lit_bark.hpp>

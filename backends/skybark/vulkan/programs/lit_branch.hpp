@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 3b8da103a1793f4843fdb2412b1a8858737a3bbfb8d2b5f0fd2e4dac227b487b
+// sha256 29a144af8f7e8f7cf19ecc6f5dc2e10411155c9d6b18af47d944eab3bdfb2f92
 #pragma once
 
 #include <skybark/kernels/lit_branch.hpp>

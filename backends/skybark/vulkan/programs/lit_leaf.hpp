@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 3a2ebcdb6c406ad1e8e02c87f8de73773489d9e83a6d6a382cce64cb7e88de64
+// sha256 edb398b7805f6558211f0b8d9bf9ad26f5b62a8da2c0b58a2a47fcd8b90115b9
 #pragma once
 
 #include <skybark/kernels/lit_leaf.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 04bd8a4a1aec64253cdc76369bd20345636a163afe3d76109a822cf1156508d1
+// sha256 f97bbb3ceaeae2beec0137d9c1b57452444d764a794aea9eb37a2fb7268cbddd
 #pragma once
 
 #include <skybark/kernels/meadow_ground.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 996d3fe6fa58cb9570262fc7996ca7d5ae7c9e316e244ac365b9e1febfebf582
+// sha256 b7e19b7ef0b4465425f9c68d98a5ffd50b1554d188d9361c575bef91d553e6cc
 #pragma once
 
 #include <skybark/kernels/merge_chains.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 59589b2db9ea207742e6b00c6f1a0d0462fe67319bdf84d1673a49f5393fbb10
+// sha256 22eee8e247a6dfedc2fa1cb89a1c1a52ed15c1068b699f189200730aa673959d
 #pragma once
 
 #include <skybark/kernels/merge_ends.hpp>

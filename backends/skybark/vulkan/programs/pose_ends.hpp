@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5dfc3fac5b3eedad6d0bb60fa8d3f9719f123f39b992ce15a52fa64ccb3f9ac0
+// sha256 0fed47d6170cc50482a4d9a184cc54eed8d9da6a341e0b5a6d04d7010020c614
 #pragma once
 
 #include <skybark/kernels/pose_ends.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 a12a14493bf0b57640fee6cd43515186827f794c19d00881b3fbc30bb55d35ec
+// sha256 f142b47e8243d063c9ea34150da159ea61e31a01be56db0e91a19451ab21fa2f
 #pragma once
 
 #include <skybark/kernels/probe_image.hpp>

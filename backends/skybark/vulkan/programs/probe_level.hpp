@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 8a6d5b10173243d02befa62604aa5e0b7778e7cb5bbfc867344780dc4fff7d3f
+// sha256 3d44b1578884e318a3229d0f71cf6d13bba2701dc1e781b79247128b8118f31b
 #pragma once
 
 #include <skybark/kernels/probe_level.hpp>

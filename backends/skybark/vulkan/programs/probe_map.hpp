@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 e7818d9d2d2eadeb80be6b045c8c3226ae17bc51ead5bd8038397c41b3668cf6
+// sha256 b500af6de7f8d72675b93a7855ba4588b258ba8c82d5ab98c79af8484fa59662
 #pragma once
 
 #include <skybark/kernels/probe_map.hpp>

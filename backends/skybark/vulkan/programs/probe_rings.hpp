@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b527e6645f228870a1efbe075890d59a8c67bba83adf574dfa74e862244f8c6e
+// sha256 6424fdbe6f65ca4fe6901b80a49ab0e755d39d94ee3f24a6d53fee2502efa251
 #pragma once
 
 #include <skybark/kernels/probe_rings.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 44cf4ccb1c665a6221653710feff55f18db264b1689eead3f39e2322ada39f34
+// sha256 6e5e1996985b05ec27ee4880ec678249443795a9a3f4586117e28b22f73e7f2f
 #pragma once
 
 #include <skybark/kernels/probe_strips.hpp>

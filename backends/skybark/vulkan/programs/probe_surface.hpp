@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 2f144c4c467af50c61301ec65aca48416ef1f12194706d38646806c625768c9a
+// sha256 f5f5671d1cb6d50333585fdaf0f732e7637b3dabd126a0d6ae200242eff91654
 #pragma once
 
 #include <skybark/kernels/probe_surface.hpp>

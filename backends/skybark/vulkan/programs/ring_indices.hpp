@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 19ebea1c7fb1219fb69c1ec67965c08b9eb51bf4ff9f84cc4601782caa2c5abe
+// sha256 aa91dc601c284f2569c5781f7c0d33a83312c7ec1dcc8fb5aa0769b03086b881
 #pragma once
 
 #include <skybark/kernels/ring_indices.hpp>

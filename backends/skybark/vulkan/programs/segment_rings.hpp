@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 cee21b904685213ff513904c0349bdb3f5a65749d2e8ffe94d79601b205cb009
+// sha256 ac123f010f7ea7252aa89ce8793df76710de0832a28c0c2bc8e506a6964407d8
 #pragma once
 
 #include <skybark/kernels/segment_rings.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 a82c6c7ec709012ba75a15385b459f5d7943442aeaf1448bb5f45eaaf1d913a5
+// sha256 9940a78a67bbea17f0719ac87e65588a82773115edcf0353cb2e06a6f7f4283a
 #pragma once
 
 #include <skybark/kernels/sway_bends.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 61c8f108fb2bd884433cbce281b322afab56f0a3ca49644609a60ee16bde6e3f
+// sha256 f0e6b948447d9aec8a122829477e22f0a295f3c8f81297acd60ac97913ff8741
 #pragma once
 
 #include <skybark/kernels/sway_energies.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 88cf88cd1732f6fd2404c7a2b9067138402cdaff55a8c0397971d4854d4ea159
+// sha256 c82fd9fe1fa4999c32d0b9544eaef7e75cdba27045b9af04a9cef0b44d19298c
 #pragma once
 
 #include <skybark/kernels/sway_forces.hpp>

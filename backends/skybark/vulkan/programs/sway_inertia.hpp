@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 cffa7317309b892f4854bc0c7ee3d24b97f4ca65380c2431d7b6e4cfb417fad7
+// sha256 c5b3b0144d648c84a3e497031a27a811406637c182a5685664a6c7ab51195fc0
 #pragma once
 
 #include <skybark/kernels/sway_inertia.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5f22d4a32248aab173efe91080dbb3dc3c3b159f8050e7bceded51aaf5154b4d
+// sha256 0d2d0066afe52a32335167c88c09961f99145caa0c5b3bca874751012e039063
 #pragma once
 
 #include <skybark/kernels/sway_moments.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 9bd4ed3b28917a4d111cb1cc7999aa7bb5bcc6da5912ad8edc7ffd3d790ded1a
+// sha256 0d3ed1184415c1d23486de7387315fc789587bfe0b331e2f1017e4f839dc8ebd
 #pragma once
 
 #include <skybark/kernels/sway_motion.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 cdbd5798852aef4748aad1d650b0206c2ad124cdba4ea3cb6a79fa89fa1e07d8
+// sha256 1f341c68707aa3df6acda23215e096956c3eda782e223e4b5de60ebabc3e923c
 #pragma once
 
 #include <skybark/kernels/wave_wind.hpp>

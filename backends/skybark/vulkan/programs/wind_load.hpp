@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1c811e3cf6702b916ca2879eabf2a0bed0a51d3d9ce82b6e4568d4405aeddf96
+// sha256 3bdd6eac1e109b404c78c2d447d23f6e255e9dc1b6ef4c0a4bfc1e38ca7d925b
 #pragma once
 
 #include <skybark/kernels/wind_load.hpp>
