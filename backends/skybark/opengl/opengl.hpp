@@ -32,8 +32,12 @@
 #include <skybark/opengl/programs/probe_level.hpp>
 #include <skybark/opengl/programs/probe_map.hpp>
 #include <skybark/opengl/programs/probe_rings.hpp>
+#include <skybark/opengl/programs/probe_slabs.hpp>
 #include <skybark/opengl/programs/probe_strips.hpp>
 #include <skybark/opengl/programs/probe_surface.hpp>
+#include <skybark/opengl/programs/probe_volume.hpp>
+#include <skybark/opengl/programs/probe_volume_draw.hpp>
+#include <skybark/opengl/programs/probe_voxels.hpp>
 #include <skybark/opengl/programs/ring_indices.hpp>
 #include <skybark/opengl/programs/segment_rings.hpp>
 #include <skybark/opengl/programs/sway_bends.hpp>

@@ -28,8 +28,12 @@
 #include <skybark/vulkan/programs/probe_level.hpp>
 #include <skybark/vulkan/programs/probe_map.hpp>
 #include <skybark/vulkan/programs/probe_rings.hpp>
+#include <skybark/vulkan/programs/probe_slabs.hpp>
 #include <skybark/vulkan/programs/probe_strips.hpp>
 #include <skybark/vulkan/programs/probe_surface.hpp>
+#include <skybark/vulkan/programs/probe_volume.hpp>
+#include <skybark/vulkan/programs/probe_volume_draw.hpp>
+#include <skybark/vulkan/programs/probe_voxels.hpp>
 #include <skybark/vulkan/programs/ring_indices.hpp>
 #include <skybark/vulkan/programs/segment_rings.hpp>
 #include <skybark/vulkan/programs/sway_bends.hpp>
