@@ -27,6 +27,7 @@
 #include <skybark/opengl/programs/meadow_ground.hpp>
 #include <skybark/opengl/programs/merge_chains.hpp>
 #include <skybark/opengl/programs/merge_ends.hpp>
+#include <skybark/opengl/programs/particle_impulse.hpp>
 #include <skybark/opengl/programs/pose_ends.hpp>
 #include <skybark/opengl/programs/probe_image.hpp>
 #include <skybark/opengl/programs/probe_level.hpp>
@@ -40,6 +41,8 @@
 #include <skybark/opengl/programs/probe_voxels.hpp>
 #include <skybark/opengl/programs/ring_indices.hpp>
 #include <skybark/opengl/programs/segment_rings.hpp>
+#include <skybark/opengl/programs/shadow_polygon.hpp>
+#include <skybark/opengl/programs/shadow_slab.hpp>
 #include <skybark/opengl/programs/sway_bends.hpp>
 #include <skybark/opengl/programs/sway_energies.hpp>
 #include <skybark/opengl/programs/sway_forces.hpp>

@@ -23,6 +23,7 @@
 #include <skybark/vulkan/programs/meadow_ground.hpp>
 #include <skybark/vulkan/programs/merge_chains.hpp>
 #include <skybark/vulkan/programs/merge_ends.hpp>
+#include <skybark/vulkan/programs/particle_impulse.hpp>
 #include <skybark/vulkan/programs/pose_ends.hpp>
 #include <skybark/vulkan/programs/probe_image.hpp>
 #include <skybark/vulkan/programs/probe_level.hpp>
@@ -36,6 +37,8 @@
 #include <skybark/vulkan/programs/probe_voxels.hpp>
 #include <skybark/vulkan/programs/ring_indices.hpp>
 #include <skybark/vulkan/programs/segment_rings.hpp>
+#include <skybark/vulkan/programs/shadow_polygon.hpp>
+#include <skybark/vulkan/programs/shadow_slab.hpp>
 #include <skybark/vulkan/programs/sway_bends.hpp>
 #include <skybark/vulkan/programs/sway_energies.hpp>
 #include <skybark/vulkan/programs/sway_forces.hpp>

@@ -14,11 +14,15 @@ namespace skybark::shared {
 
 using glm::abs;
 using glm::atan;
+using glm::ceil;
 using glm::clamp;
 using glm::cos;
 using glm::exp;
 using glm::floor;
+using glm::floatBitsToInt;
+using glm::intBitsToFloat;
 using glm::ivec2;
+using glm::ivec3;
 using glm::max;
 using glm::min;
 using glm::mix;
