@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 3612eebcfd1a84a58e2398acde38d29bb20a06510990397d59402039af3c0b42
+// sha256 99377090c1476bccc2af0c6ce206f81c49161d079a76a9c64daf41ea2709c87e
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 035d51c45ab052cfb4f1044c6eddfaa6dcdc76f9fe4148bdb9736648aab3ae8c
+// sha256 815f4fc45b892a2b37bb9325ae2f22f99270f9be5c59fe78b2567dc03352f1db
 #pragma once
 
 #include <cstdint>
