@@ -5,8 +5,8 @@
 // over the slabs of an invocation, rounded up, there are elements * parts * header.z invocations in
 // groups of 64; more than 65,535 groups go into the second dimension.
 //
-// header.x: the first element, y: the number of elements, or their upper limit, z: invocations that
-// share a slab, w: bit 0: the length is on the device. The volume of int32 is an image at
+// header.x: the first element, y: the number of elements, z: invocations that share a slab, w: bit 0:
+// elements from the device's length on are left out (they count from 0 then, whatever x). The volume of int32 is an image at
 // SKYBARK_SUMS_BINDING.
 //
 // llvmpipe ends an invocation's loops after 65,535 turns altogether: where the device may be one,
@@ -15,7 +15,7 @@
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 64) in;
 #include KERNEL
-#include "length.glsl"
+layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
 
 void skybark_add(uint i, uint s, uint lane, ivec3 size) {
@@ -44,10 +44,11 @@ void main() {
     uint work = id / skybark_header.z;
     uint lane = id - work * skybark_header.z;
     uint k = work / parts;
-    if (k >= skybark_elements()) {
+    uint i = skybark_header.x + k;
+    bool counted = (skybark_header.w & 1u) != 0u;
+    if (k >= skybark_header.y || (counted && i >= skybark_length[0])) {
         return;
     }
-    uint i = skybark_header.x + k;
     uint first = (work - k * parts) * each;
     uint last = min(first + each, kernel_slab_count(i));
     ivec3 size = imageSize(skybark_sums);

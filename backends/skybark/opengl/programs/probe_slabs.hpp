@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 79e9272e3f86c62d9d58f43938faab013758fb35241a1a2abbb6ada311d94392
+// sha256 bafaf1336c07b8ea9efb33afa6df2a757b9dbcf2a18ce3f8b8ce8450a5003303
 #pragma once
 
 #include <skybark/kernels/probe_slabs.hpp>
@@ -80,10 +80,6 @@ int kernel_amount(uint i, float lateral, int y) {
     return (int(lateral) + boxes[i].high.w * y) * factor;
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
-uint skybark_elements() {
-    return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
-                                         : skybark_header.y;
-}
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
 void skybark_add(uint i, uint s, uint lane, ivec3 size) {
     voxel_slab slab = kernel_slab(i, s);
@@ -110,16 +106,364 @@ void main() {
     uint work = id / skybark_header.z;
     uint lane = id - work * skybark_header.z;
     uint k = work / parts;
-    if (k >= skybark_elements()) {
+    uint i = skybark_header.x + k;
+    bool counted = (skybark_header.w & 1u) != 0u;
+    if (k >= skybark_header.y || (counted && i >= skybark_length[0])) {
         return;
     }
-    uint i = skybark_header.x + k;
     uint first = (work - k * parts) * each;
     uint last = min(first + each, kernel_slab_count(i));
     ivec3 size = imageSize(skybark_sums);
     for (uint s = first; s < last; ++s) {
         skybark_add(i, s, lane, size);
     }
+}
+)glsl";
+    static constexpr std::string_view slabs_vert = R"glsl(#version 450
+#define SKYBARK_OPENGL
+#define KERNEL_PARAMETERS uint most; int per_x; int per_z; int factor;
+#ifdef SKYBARK_VULKAN
+layout(push_constant) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexIndex
+#define SKYBARK_IMAGE_BINDING 16
+#define SKYBARK_VOLUME_BINDING 17
+#define SKYBARK_TARGET_BINDING 18
+#define SKYBARK_SUMS_BINDING 19
+#else
+layout(std140, binding = 0) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexID
+#define SKYBARK_IMAGE_BINDING 0
+#define SKYBARK_VOLUME_BINDING 8
+#define SKYBARK_TARGET_BINDING 0
+#define SKYBARK_SUMS_BINDING 4
+#endif
+    uvec4 skybark_header;
+#ifdef KERNEL_PARAMETERS
+    KERNEL_PARAMETERS
+#endif
+};
+struct voxel_slab {
+    ivec2 low;
+    ivec2 high;
+    int slice;
+};
+#ifdef SKYBARK_EXPAND
+vec4 vertex_out[VERTEX_VEC4S];
+void emit_vertex();
+#endif
+#ifdef SKYBARK_VERTEX_STAGE
+layout(location = 0) out vec4 varying_out[KERNEL_VARYINGS];
+#endif
+#ifdef SKYBARK_FRAGMENT_STAGE
+layout(location = 0) in vec4 varying_in[KERNEL_VARYINGS];
+layout(location = 0) out vec4 color_out;
+#endif
+#if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
+layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+#if defined(KERNEL_VOLUMES) && (defined(SKYBARK_FRAGMENT_STAGE) || defined(SKYBARK_COMPUTE_STAGE))
+layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL_VOLUMES];
+#endif
+#if defined(KERNEL_TARGETS) && defined(SKYBARK_COMPUTE_STAGE)
+layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
+#endif
+struct probe_box {
+    ivec4 low;
+    ivec4 high;
+};
+layout(std430, binding = 0) readonly buffer boxes_buffer { probe_box boxes[]; };
+uint kernel_slabs() { return most; }
+uint kernel_slab_count(uint i) { return min(uint(max(boxes[i].high.z - boxes[i].low.z, 0)), most); }
+voxel_slab kernel_slab(uint i, uint s) {
+    probe_box box = boxes[i];
+    int by = int(s);
+    return voxel_slab(ivec2(box.low.x + by, box.low.y), ivec2(box.high.x, box.high.y - by),
+                      box.low.z + by);
+}
+float kernel_lateral(uint i, int x, int z) {
+    return float(boxes[i].low.w + per_x * x + per_z * z);
+}
+int kernel_amount(uint i, float lateral, int y) {
+    return (int(lateral) + boxes[i].high.w * y) * factor;
+}
+layout(location = 0) uniform ivec4 skybark_layers; // x, y: a layer's sides, z: the first, w: how many
+layout(location = 1) uniform ivec4 skybark_tiles;  // x: tiles in a row, z, w: the target's sides
+ivec2 skybark_origin(int n) {
+    return skybark_tiles.x == 0
+               ? ivec2(0)
+               : ivec2(n % skybark_tiles.x, n / skybark_tiles.x) * skybark_layers.xy;
+}
+bool skybark_empty(voxel_slab slab) { return any(greaterThanEqual(slab.low, slab.high)); }
+voxel_slab skybark_nothing() { return voxel_slab(ivec2(0), ivec2(0), skybark_layers.z); }
+voxel_slab skybark_visible(uint i, uint s) {
+    voxel_slab slab = kernel_slab(i, s);
+    slab.low = max(slab.low, ivec2(0));
+    slab.high = min(slab.high, skybark_layers.xy);
+    bool inside =
+        slab.slice >= skybark_layers.z && slab.slice - skybark_layers.z < skybark_layers.w;
+    if (!inside || skybark_empty(slab)) {
+        return skybark_nothing();
+    }
+    return slab;
+}
+vec4 skybark_corner(voxel_slab slab, uint corner) {
+    ivec2 at = ivec2((corner & 1u) != 0u ? slab.high.x : slab.low.x,
+                     (corner & 2u) != 0u ? slab.high.y : slab.low.y);
+    at += skybark_origin(slab.slice - skybark_layers.z);
+    return vec4(vec2(2 * at - skybark_tiles.zw) / vec2(skybark_tiles.zw), 0.0, 1.0);
+}
+layout(location = 0) flat out ivec2 skybark_cell; // the element and its layer, or the point
+void main() {
+    if ((skybark_header.w & 8u) != 0u) {
+        skybark_cell = ivec2(gl_VertexID, 0);
+        gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
+        return;
+    }
+    const uint corners[6] = uint[6](0u, 1u, 2u, 2u, 1u, 3u);
+    uint rectangle = uint(gl_VertexID) / 6u;
+    uint element = rectangle / kernel_slabs();
+    uint s = rectangle - element * kernel_slabs();
+    uint i = skybark_header.x + element;
+    voxel_slab slab = skybark_nothing();
+    if (s < kernel_slab_count(i)) {
+        slab = skybark_visible(i, s);
+    }
+    skybark_cell = ivec2(i, slab.slice);
+    gl_Position = skybark_corner(slab, corners[uint(gl_VertexID) - rectangle * 6u]);
+}
+)glsl";
+    static constexpr std::string_view slabs_geom = R"glsl(#version 450
+#define SKYBARK_OPENGL
+#define KERNEL_PARAMETERS uint most; int per_x; int per_z; int factor;
+#ifdef SKYBARK_VULKAN
+layout(push_constant) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexIndex
+#define SKYBARK_IMAGE_BINDING 16
+#define SKYBARK_VOLUME_BINDING 17
+#define SKYBARK_TARGET_BINDING 18
+#define SKYBARK_SUMS_BINDING 19
+#else
+layout(std140, binding = 0) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexID
+#define SKYBARK_IMAGE_BINDING 0
+#define SKYBARK_VOLUME_BINDING 8
+#define SKYBARK_TARGET_BINDING 0
+#define SKYBARK_SUMS_BINDING 4
+#endif
+    uvec4 skybark_header;
+#ifdef KERNEL_PARAMETERS
+    KERNEL_PARAMETERS
+#endif
+};
+struct voxel_slab {
+    ivec2 low;
+    ivec2 high;
+    int slice;
+};
+#ifdef SKYBARK_EXPAND
+vec4 vertex_out[VERTEX_VEC4S];
+void emit_vertex();
+#endif
+#ifdef SKYBARK_VERTEX_STAGE
+layout(location = 0) out vec4 varying_out[KERNEL_VARYINGS];
+#endif
+#ifdef SKYBARK_FRAGMENT_STAGE
+layout(location = 0) in vec4 varying_in[KERNEL_VARYINGS];
+layout(location = 0) out vec4 color_out;
+#endif
+#if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
+layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+#if defined(KERNEL_VOLUMES) && (defined(SKYBARK_FRAGMENT_STAGE) || defined(SKYBARK_COMPUTE_STAGE))
+layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL_VOLUMES];
+#endif
+#if defined(KERNEL_TARGETS) && defined(SKYBARK_COMPUTE_STAGE)
+layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
+#endif
+struct probe_box {
+    ivec4 low;
+    ivec4 high;
+};
+layout(std430, binding = 0) readonly buffer boxes_buffer { probe_box boxes[]; };
+uint kernel_slabs() { return most; }
+uint kernel_slab_count(uint i) { return min(uint(max(boxes[i].high.z - boxes[i].low.z, 0)), most); }
+voxel_slab kernel_slab(uint i, uint s) {
+    probe_box box = boxes[i];
+    int by = int(s);
+    return voxel_slab(ivec2(box.low.x + by, box.low.y), ivec2(box.high.x, box.high.y - by),
+                      box.low.z + by);
+}
+float kernel_lateral(uint i, int x, int z) {
+    return float(boxes[i].low.w + per_x * x + per_z * z);
+}
+int kernel_amount(uint i, float lateral, int y) {
+    return (int(lateral) + boxes[i].high.w * y) * factor;
+}
+layout(location = 0) uniform ivec4 skybark_layers; // x, y: a layer's sides, z: the first, w: how many
+layout(location = 1) uniform ivec4 skybark_tiles;  // x: tiles in a row, z, w: the target's sides
+ivec2 skybark_origin(int n) {
+    return skybark_tiles.x == 0
+               ? ivec2(0)
+               : ivec2(n % skybark_tiles.x, n / skybark_tiles.x) * skybark_layers.xy;
+}
+bool skybark_empty(voxel_slab slab) { return any(greaterThanEqual(slab.low, slab.high)); }
+voxel_slab skybark_nothing() { return voxel_slab(ivec2(0), ivec2(0), skybark_layers.z); }
+voxel_slab skybark_visible(uint i, uint s) {
+    voxel_slab slab = kernel_slab(i, s);
+    slab.low = max(slab.low, ivec2(0));
+    slab.high = min(slab.high, skybark_layers.xy);
+    bool inside =
+        slab.slice >= skybark_layers.z && slab.slice - skybark_layers.z < skybark_layers.w;
+    if (!inside || skybark_empty(slab)) {
+        return skybark_nothing();
+    }
+    return slab;
+}
+vec4 skybark_corner(voxel_slab slab, uint corner) {
+    ivec2 at = ivec2((corner & 1u) != 0u ? slab.high.x : slab.low.x,
+                     (corner & 2u) != 0u ? slab.high.y : slab.low.y);
+    at += skybark_origin(slab.slice - skybark_layers.z);
+    return vec4(vec2(2 * at - skybark_tiles.zw) / vec2(skybark_tiles.zw), 0.0, 1.0);
+}
+#ifndef SKYBARK_MAX_VERTICES
+#define SKYBARK_MAX_VERTICES 16
+#endif
+layout(points) in;
+layout(triangle_strip, max_vertices = SKYBARK_MAX_VERTICES) out;
+layout(location = 0) flat in ivec2 skybark_point[1];
+layout(location = 0) flat out ivec2 skybark_cell; // the element and its layer
+void skybark_emit(uint i, voxel_slab slab) {
+    for (uint corner = 0u; corner < 4u; ++corner) {
+        skybark_cell = ivec2(i, slab.slice);
+        gl_Layer = slab.slice - skybark_layers.z;
+        gl_Position = skybark_corner(slab, corner);
+        EmitVertex();
+    }
+    EndPrimitive();
+}
+void main() {
+    uint slabs = kernel_slabs();
+    uint parts = (slabs + skybark_header.z - 1u) / skybark_header.z;
+    uint element = uint(skybark_point[0].x) / parts;
+    uint i = skybark_header.x + element;
+    uint first = (uint(skybark_point[0].x) - element * parts) * skybark_header.z;
+    bool padded = (skybark_header.w & 2u) != 0u;
+    uint count = kernel_slab_count(i);
+    uint last = min(first + skybark_header.z, padded ? slabs : min(count, slabs));
+    for (uint s = first; s < last; ++s) {
+        voxel_slab slab = skybark_nothing();
+        if (s < count) {
+            slab = skybark_visible(i, s);
+        }
+        if (padded || !skybark_empty(slab)) {
+            skybark_emit(i, slab);
+        }
+    }
+}
+)glsl";
+    static constexpr std::string_view slabs_frag = R"glsl(#version 450
+#define SKYBARK_OPENGL
+#define KERNEL_PARAMETERS uint most; int per_x; int per_z; int factor;
+#ifdef SKYBARK_VULKAN
+layout(push_constant) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexIndex
+#define SKYBARK_IMAGE_BINDING 16
+#define SKYBARK_VOLUME_BINDING 17
+#define SKYBARK_TARGET_BINDING 18
+#define SKYBARK_SUMS_BINDING 19
+#else
+layout(std140, binding = 0) uniform skybark_block {
+#define SKYBARK_VERTEX_INDEX gl_VertexID
+#define SKYBARK_IMAGE_BINDING 0
+#define SKYBARK_VOLUME_BINDING 8
+#define SKYBARK_TARGET_BINDING 0
+#define SKYBARK_SUMS_BINDING 4
+#endif
+    uvec4 skybark_header;
+#ifdef KERNEL_PARAMETERS
+    KERNEL_PARAMETERS
+#endif
+};
+struct voxel_slab {
+    ivec2 low;
+    ivec2 high;
+    int slice;
+};
+#ifdef SKYBARK_EXPAND
+vec4 vertex_out[VERTEX_VEC4S];
+void emit_vertex();
+#endif
+#ifdef SKYBARK_VERTEX_STAGE
+layout(location = 0) out vec4 varying_out[KERNEL_VARYINGS];
+#endif
+#ifdef SKYBARK_FRAGMENT_STAGE
+layout(location = 0) in vec4 varying_in[KERNEL_VARYINGS];
+layout(location = 0) out vec4 color_out;
+#endif
+#if defined(KERNEL_IMAGES) && defined(SKYBARK_FRAGMENT_STAGE)
+layout(binding = SKYBARK_IMAGE_BINDING) uniform sampler2D kernel_images[KERNEL_IMAGES];
+#endif
+#if defined(KERNEL_VOLUMES) && (defined(SKYBARK_FRAGMENT_STAGE) || defined(SKYBARK_COMPUTE_STAGE))
+layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL_VOLUMES];
+#endif
+#if defined(KERNEL_TARGETS) && defined(SKYBARK_COMPUTE_STAGE)
+layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
+#endif
+struct probe_box {
+    ivec4 low;
+    ivec4 high;
+};
+layout(std430, binding = 0) readonly buffer boxes_buffer { probe_box boxes[]; };
+uint kernel_slabs() { return most; }
+uint kernel_slab_count(uint i) { return min(uint(max(boxes[i].high.z - boxes[i].low.z, 0)), most); }
+voxel_slab kernel_slab(uint i, uint s) {
+    probe_box box = boxes[i];
+    int by = int(s);
+    return voxel_slab(ivec2(box.low.x + by, box.low.y), ivec2(box.high.x, box.high.y - by),
+                      box.low.z + by);
+}
+float kernel_lateral(uint i, int x, int z) {
+    return float(boxes[i].low.w + per_x * x + per_z * z);
+}
+int kernel_amount(uint i, float lateral, int y) {
+    return (int(lateral) + boxes[i].high.w * y) * factor;
+}
+layout(location = 0) uniform ivec4 skybark_layers; // x, y: a layer's sides, z: the first, w: how many
+layout(location = 1) uniform ivec4 skybark_tiles;  // x: tiles in a row, z, w: the target's sides
+ivec2 skybark_origin(int n) {
+    return skybark_tiles.x == 0
+               ? ivec2(0)
+               : ivec2(n % skybark_tiles.x, n / skybark_tiles.x) * skybark_layers.xy;
+}
+bool skybark_empty(voxel_slab slab) { return any(greaterThanEqual(slab.low, slab.high)); }
+voxel_slab skybark_nothing() { return voxel_slab(ivec2(0), ivec2(0), skybark_layers.z); }
+voxel_slab skybark_visible(uint i, uint s) {
+    voxel_slab slab = kernel_slab(i, s);
+    slab.low = max(slab.low, ivec2(0));
+    slab.high = min(slab.high, skybark_layers.xy);
+    bool inside =
+        slab.slice >= skybark_layers.z && slab.slice - skybark_layers.z < skybark_layers.w;
+    if (!inside || skybark_empty(slab)) {
+        return skybark_nothing();
+    }
+    return slab;
+}
+vec4 skybark_corner(voxel_slab slab, uint corner) {
+    ivec2 at = ivec2((corner & 1u) != 0u ? slab.high.x : slab.low.x,
+                     (corner & 2u) != 0u ? slab.high.y : slab.low.y);
+    at += skybark_origin(slab.slice - skybark_layers.z);
+    return vec4(vec2(2 * at - skybark_tiles.zw) / vec2(skybark_tiles.zw), 0.0, 1.0);
+}
+layout(location = 0) flat in ivec2 skybark_cell;
+layout(location = 0) out vec2 skybark_amount; // high, low
+void main() {
+    int slice = skybark_cell.y;
+    ivec2 at = ivec2(gl_FragCoord.xy) - skybark_origin(slice - skybark_layers.z);
+    uint i = uint(skybark_cell.x);
+    int amount = kernel_amount(i, kernel_lateral(i, at.x, slice), at.y);
+    int low = amount & 255;
+    int carry = low >> 7;
+    skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));
 }
 )glsl";
 };
