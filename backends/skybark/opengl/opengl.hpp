@@ -18,6 +18,7 @@
 #include <skybark/opengl/programs/clear_sky.hpp>
 #include <skybark/opengl/programs/detailed_branch.hpp>
 #include <skybark/opengl/programs/develop.hpp>
+#include <skybark/opengl/programs/grid_impulse.hpp>
 #include <skybark/opengl/programs/grid_wind.hpp>
 #include <skybark/opengl/programs/hermite_branch.hpp>
 #include <skybark/opengl/programs/leaf_blade.hpp>

@@ -14,6 +14,7 @@
 #include <skybark/vulkan/programs/clear_sky.hpp>
 #include <skybark/vulkan/programs/detailed_branch.hpp>
 #include <skybark/vulkan/programs/develop.hpp>
+#include <skybark/vulkan/programs/grid_impulse.hpp>
 #include <skybark/vulkan/programs/grid_wind.hpp>
 #include <skybark/vulkan/programs/hermite_branch.hpp>
 #include <skybark/vulkan/programs/leaf_blade.hpp>

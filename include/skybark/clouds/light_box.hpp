@@ -1,0 +1,252 @@
+#pragma once
+// The box of the attenuation volume: fitted to the cloud for each direction of the sun.
+//
+// The box's +y axis points to the sun (Shimada et al. 2008, 3.3). Two rules keep a picture still
+// when little changes. A voxel's sides are powers of 2^(1/32) metres, the smallest that the cloud
+// fits with, and the voxels' corners lie at whole multiples of the sides from the world's origin,
+// so a cloud that drifts is resampled only where the grid follows it by whole voxels. There is no
+// history: a box depends on the cloud and the sun of this moment alone.
+//
+// All around the cloud is a margin of one voxel at least: the topmost layer holds no attenuation
+// and the undermost all of it, so that sampling that is clamped to the box is right below it.
+
+#include <skybark/core/records.hpp>
+#include <skybark/core/result.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <span>
+#include <string>
+
+namespace skybark {
+
+/// A fitted grid, and how many voxels it has.
+struct light_box {
+    light_grid grid;
+    glm::uvec3 voxels{0};
+    float largest_radius = 0; ///< of a particle, m
+};
+
+/// What a fit needs to know of a cloud whose particles are on the device only.
+struct cloud_bounds {
+    glm::vec3 low{0};         ///< m, with the radii
+    glm::vec3 high{0};        ///< m, with the radii
+    float largest_radius = 0; ///< m
+    float deepest = 100;      ///< no straight line has more optical depth than this
+};
+
+/// Light sums are whole numbers of this much attenuation, where the deepest column allows it.
+inline constexpr float finest_quantum = 0x1p-22f;
+
+namespace detail {
+
+/// Right-handed axes whose y points to the sun: rows.
+[[nodiscard]] inline std::array<glm::dvec3, 3> light_axes(glm::vec3 to_sun) {
+    const glm::dvec3 y = glm::normalize(glm::dvec3(to_sun));
+    const glm::dvec3 other = std::abs(y.y) > 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 x = glm::normalize(glm::cross(other, y));
+    return {x, y, glm::cross(x, y)};
+}
+
+/// The smallest power of 2^(1/32) that is not less, as a float.
+[[nodiscard]] inline float round_side_up(double side) {
+    const double power = std::ceil(std::log2(side) * 32.0);
+    auto rounded = static_cast<float>(std::exp2(power / 32.0));
+    while (static_cast<double>(rounded) < side) {
+        rounded = std::nextafter(rounded, std::numeric_limits<float>::infinity());
+    }
+    return rounded;
+}
+
+/// The smallest power of two, at least the finest, for which a sum of `deepest` fits into an int32.
+[[nodiscard]] inline float quantum_for(double deepest) {
+    double quantum = static_cast<double>(finest_quantum);
+    while (deepest > quantum * 2.1e9) {
+        quantum *= 2;
+    }
+    return static_cast<float>(quantum);
+}
+
+/// A grid over [low, high] in the light's frame (m along the axes, from the world's origin).
+[[nodiscard]] inline light_grid place_grid(const std::array<glm::dvec3, 3>& axes, glm::dvec3 low,
+                                           glm::dvec3 high, glm::uvec3 voxels, float quantum) {
+    light_grid grid;
+    const glm::dvec3 middle = (low + high) * 0.5;
+    const glm::vec3 anchor(axes[0] * middle.x + axes[1] * middle.y + axes[2] * middle.z);
+    grid.anchor = glm::vec4(anchor, 0);
+    glm::vec4* const rows[] = {&grid.row_x, &grid.row_y, &grid.row_z};
+    for (int a = 0; a < 3; ++a) {
+        const double room = static_cast<double>(voxels[a]) - 3;
+        const float side = round_side_up((high[a] - low[a]) / room);
+        const double first = std::floor(low[a] / static_cast<double>(side)) - 1;
+        const double at =
+            glm::dot(axes[static_cast<std::size_t>(a)], glm::dvec3(anchor)) / double(side) - first;
+        *rows[a] = glm::vec4(glm::vec3(axes[static_cast<std::size_t>(a)] / double(side)),
+                             static_cast<float>(at));
+        grid.voxel[a] = side;
+    }
+    grid.voxel.w = quantum;
+    return grid;
+}
+
+[[nodiscard]] inline result<void> check_sun(glm::vec3 to_sun) {
+    const float size = glm::dot(to_sun, to_sun);
+    if (!(size > 1e-12f) || !std::isfinite(size)) {
+        return fail(error_code::bad_input,
+                    "The direction to the sun is (" + std::to_string(to_sun.x) + ", " +
+                        std::to_string(to_sun.y) + ", " + std::to_string(to_sun.z) +
+                        "); expected a finite vector that is not zero.");
+    }
+    return {};
+}
+
+[[nodiscard]] inline result<void> check_voxels(glm::uvec3 voxels) {
+    for (int a = 0; a < 3; ++a) {
+        if (voxels[a] < 4 || voxels[a] > 65536) {
+            return fail(error_code::bad_input,
+                        "An attenuation volume of " + std::to_string(voxels.x) + " x " +
+                            std::to_string(voxels.y) + " x " + std::to_string(voxels.z) +
+                            " voxels was asked for; each side must be 4 to 65536.");
+        }
+    }
+    return {};
+}
+
+/// Sums of optical depth over 32 × 32 bundles of columns: no line through the cloud along the light
+/// is deeper than the largest. In whole 1/1024ths, rounded up, so that order does not matter.
+class column_depths {
+  public:
+    column_depths(glm::dvec2 low, glm::dvec2 high)
+        : low_(low), scale_(glm::dvec2(side) / glm::max(high - low, glm::dvec2(1e-30))) {}
+
+    void add(glm::dvec2 centre, double radius, double depth) {
+        const glm::ivec2 first = cell(centre - radius);
+        const glm::ivec2 last = cell(centre + radius);
+        const auto more = static_cast<std::uint64_t>(std::ceil(std::min(depth, 1e12) * 1024));
+        for (int z = first.y; z <= last.y; ++z) {
+            for (int x = first.x; x <= last.x; ++x) {
+                sums_[static_cast<std::size_t>(z * side + x)] += more;
+            }
+        }
+    }
+    [[nodiscard]] double deepest() const {
+        return static_cast<double>(*std::max_element(sums_.begin(), sums_.end())) / 1024;
+    }
+
+  private:
+    static constexpr int side = 32;
+    [[nodiscard]] glm::ivec2 cell(glm::dvec2 at) const {
+        return glm::clamp(glm::ivec2(glm::floor((at - low_) * scale_)), glm::ivec2(0),
+                          glm::ivec2(side - 1));
+    }
+    glm::dvec2 low_;
+    glm::dvec2 scale_;
+    std::array<std::uint64_t, side * side> sums_{};
+};
+
+} // namespace detail
+
+/// Whether every particle can be lit: a sentence about the first that can't, with its number.
+[[nodiscard]] inline result<void> check_particles(std::span<const cloud_particle> particles) {
+    if (particles.empty()) {
+        return fail(error_code::bad_input, "The cloud has no particles; expected one at least.");
+    }
+    const auto wrong = [](std::size_t i, const char* what, float value, const char* expected) {
+        return fail(error_code::bad_input, "Particle " + std::to_string(i) + " has " + what + " " +
+                                               std::to_string(value) + "; expected " + expected +
+                                               ".");
+    };
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const cloud_particle& p = particles[i];
+        for (int a = 0; a < 3; ++a) {
+            if (!(std::abs(p.position[a]) <= 1e15f)) {
+                return wrong(i, "the coordinate", p.position[a], "a number of metres up to 1e15");
+            }
+        }
+        if (!(p.radius > 0 && p.radius <= 1e15f)) {
+            return wrong(i, "the radius", p.radius, "a number of metres above 0, up to 1e15");
+        }
+        if (!(p.optical_depth >= 0 && p.optical_depth <= 1e6f)) {
+            return wrong(i, "the optical depth", p.optical_depth, "a number from 0 to 1e6");
+        }
+        if (!(p.albedo >= 0 && p.albedo <= 1)) {
+            return wrong(i, "the albedo", p.albedo, "a number from 0 to 1");
+        }
+    }
+    return {};
+}
+
+/// Fits a box of `voxels` (each side 4 or more) tightly around the particles, its y axis towards
+/// the sun (of any length, straight up and level included). The quantum is the finest that the
+/// deepest column allows. Host time: two passes over the particles.
+/// Errors: bad_input for a particle, a direction or a size that makes no sense.
+[[nodiscard]] inline result<light_box> fit_light_box(std::span<const cloud_particle> particles,
+                                                     glm::vec3 to_sun, glm::uvec3 voxels) {
+    for (const result<void>& done :
+         {detail::check_voxels(voxels), detail::check_sun(to_sun), check_particles(particles)}) {
+        if (!done) {
+            return failure(done.error());
+        }
+    }
+    const std::array<glm::dvec3, 3> axes = detail::light_axes(to_sun);
+    const auto along = [&axes](glm::dvec3 p) {
+        return glm::dvec3(glm::dot(axes[0], p), glm::dot(axes[1], p), glm::dot(axes[2], p));
+    };
+    glm::dvec3 low(std::numeric_limits<double>::infinity());
+    glm::dvec3 high = -low;
+    light_box box;
+    box.voxels = voxels;
+    for (const cloud_particle& p : particles) {
+        const glm::dvec3 at = along(p.position);
+        low = glm::min(low, at - double(p.radius));
+        high = glm::max(high, at + double(p.radius));
+        box.largest_radius = std::max(box.largest_radius, p.radius);
+    }
+    detail::column_depths columns({low.x, low.z}, {high.x, high.z});
+    for (const cloud_particle& p : particles) {
+        const glm::dvec3 at = along(p.position);
+        columns.add({at.x, at.z}, double(p.radius), double(p.optical_depth));
+    }
+    box.grid = detail::place_grid(axes, low, high, voxels, detail::quantum_for(columns.deepest()));
+    return box;
+}
+
+/// The same around a box of the world, in no time: looser, for particles that the host never sees
+/// and for density grids.
+[[nodiscard]] inline result<light_box> fit_light_box(const cloud_bounds& bounds, glm::vec3 to_sun,
+                                                     glm::uvec3 voxels) {
+    for (const result<void>& done : {detail::check_voxels(voxels), detail::check_sun(to_sun)}) {
+        if (!done) {
+            return failure(done.error());
+        }
+    }
+    const glm::vec3 size = bounds.high - bounds.low;
+    if (!(size.x > 0 && size.y > 0 && size.z > 0 && std::isfinite(glm::dot(size, size))) ||
+        !(bounds.deepest >= 0 && bounds.deepest <= 1e12f) || !(bounds.largest_radius >= 0)) {
+        return fail(error_code::bad_input,
+                    "A cloud of " + std::to_string(size.x) + " x " + std::to_string(size.y) +
+                        " x " + std::to_string(size.z) + " m and optical depth up to " +
+                        std::to_string(bounds.deepest) +
+                        " cannot be lit; expected finite sizes above 0.");
+    }
+    const std::array<glm::dvec3, 3> axes = detail::light_axes(to_sun);
+    const glm::dvec3 middle = (glm::dvec3(bounds.low) + glm::dvec3(bounds.high)) * 0.5;
+    const glm::dvec3 half = glm::dvec3(size) * 0.5;
+    glm::dvec3 low;
+    glm::dvec3 high;
+    for (int a = 0; a < 3; ++a) {
+        const glm::dvec3& axis = axes[static_cast<std::size_t>(a)];
+        const double reach = glm::dot(glm::abs(axis), half);
+        low[a] = glm::dot(axis, middle) - reach;
+        high[a] = glm::dot(axis, middle) + reach;
+    }
+    return light_box{
+        detail::place_grid(axes, low, high, voxels, detail::quantum_for(double(bounds.deepest))),
+        voxels, bounds.largest_radius};
+}
+
+} // namespace skybark
