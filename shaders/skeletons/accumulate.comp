@@ -5,8 +5,8 @@
 // over the slabs of an invocation, rounded up, there are elements * parts * header.z invocations in
 // groups of 64; more than 65,535 groups go into the second dimension.
 //
-// header.x: the first element, y: the number of elements, z: invocations that share a slab, w: bit 0:
-// elements from the device's length on are left out (they count from 0 then, whatever x). The volume of int32 is an image at
+// header.x: the first element, y: the number of elements, z: invocations that share a slab, w: bit
+// 0: elements from the device's length on are left out. The volume of int32 is an image at
 // SKYBARK_SUMS_BINDING.
 //
 // llvmpipe ends an invocation's loops after 65,535 turns altogether: where the device may be one,
