@@ -175,7 +175,8 @@ def opengl_header(path):
     name, kernel_text = path.stem, path.read_text()
     texts = {}
     for skeleton in skeletons(OPENGL, kernel_text):
-        expand = ["SKYBARK_EXPAND"] if skeleton.suffix == ".geom" else []
+        emits = skeleton.suffix == ".geom" and function_of(skeleton.name)
+        expand = ["SKYBARK_EXPAND"] if emits else []
         texts[skeleton.name] = define(flatten(skeleton, path), "SKYBARK_OPENGL", *expand)
 
     def body():
@@ -221,19 +222,22 @@ def function_of(skeleton):
 
 
 def standalone_headers():
-    """Programs of a backend that no kernel belongs to: shaders/programs/API_NAME.comp."""
-    for path in sorted((HERE / "programs").glob("*.comp")):
+    """Shaders of a backend that no kernel belongs to: shaders/programs/API_NAME.STAGE."""
+    for path in sorted((HERE / "programs").glob("*_*.*")):
+        stage = path.suffix[1:]
+        if stage not in ("comp", "vert", "frag"):
+            continue
         api, name = path.stem.split("_", 1)
         text = define(flatten(path), f"SKYBARK_{api.upper()}")
 
-        def body(api=api, name=name, text=text):
+        def body(api=api, name=name, stage=stage, text=text):
             if api == "opengl":
-                check_glsl(text, "comp", name)
-                value = f'inline constexpr std::string_view {name}_comp = R"glsl({text})glsl";\n'
+                check_glsl(text, stage, name)
+                value = f'inline constexpr std::string_view {name}_{stage} = R"glsl({text})glsl";\n'
             else:
                 value = (
-                    f"inline constexpr std::uint32_t {name}_comp[] = {{\n"
-                    f"{words(spirv(text, 'comp', name))}}};\n"
+                    f"inline constexpr std::uint32_t {name}_{stage}[] = {{\n"
+                    f"{words(spirv(text, stage, name))}}};\n"
                 )
             return (
                 "#include <cstdint>\n#include <string_view>\n\n"

@@ -1,5 +1,6 @@
 #version 450
-// Arguments of an indirect call, from the count that only the device knows.
+// Arguments of an indirect call, from the count that only the device knows. `each` is how many
+// invocations, vertices or indices an element has.
 layout(local_size_x = 1) in;
 layout(std140, binding = 0) uniform skybark_block {
     uvec4 skybark_header;   // x: 0 dispatch, 1 draw arrays, 2 draw elements; y: skip, z: most, w: each
@@ -12,7 +13,8 @@ void main() {
     uint count = length[0] > skybark_header.y ? length[0] - skybark_header.y : 0u;
     count = min(count, skybark_header.z);
     if (skybark_header.x == 0u) {
-        uint groups = count / 64u + (count % 64u != 0u ? 1u : 0u);
+        uint invocations = count * skybark_header.w;
+        uint groups = invocations / 64u + (invocations % 64u != 0u ? 1u : 0u);
         uint columns = clamp(groups, 1u, 65535u);
         arguments[0] = columns;
         arguments[1] = groups / columns + (groups % columns != 0u ? 1u : 0u);

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 9a81c5ef79507829773cecdd661fe5b0b0db0cfcd4d7c5bb9f6c3534d1f7ba70
+// sha256 00401ef01fdffcbc7b13c50547727baf5243e36eff6a57e2f4c16d3ce2538df6
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,8 @@ void main() {
     uint count = length[0] > skybark_header.y ? length[0] - skybark_header.y : 0u;
     count = min(count, skybark_header.z);
     if (skybark_header.x == 0u) {
-        uint groups = count / 64u + (count % 64u != 0u ? 1u : 0u);
+        uint invocations = count * skybark_header.w;
+        uint groups = invocations / 64u + (invocations % 64u != 0u ? 1u : 0u);
         uint columns = clamp(groups, 1u, 65535u);
         arguments[0] = columns;
         arguments[1] = groups / columns + (groups % columns != 0u ? 1u : 0u);
