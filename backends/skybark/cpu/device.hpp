@@ -5,10 +5,12 @@
 
 #include <skybark/core/backend.hpp>
 #include <skybark/cpu/jobs.hpp>
+#include <skybark/cpu/layers.hpp>
 #include <skybark/cpu/memory.hpp>
 #include <skybark/cpu/program.hpp>
 #include <skybark/cpu/raster.hpp>
 #include <skybark/cpu/sinks.hpp>
+#include <skybark/cpu/sort.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -23,8 +25,12 @@ struct device_options {
     std::uint32_t threads = 0; ///< 0: as many as the machine runs at once
     parallel_for jobs;         ///< the caller's job system in place of our threads
     /// What the device says that it can do. Smaller values make algorithms cut their work.
-    device_limits limits{std::uint64_t{1} << 46, 16, std::numeric_limits<std::uint32_t>::max(),
-                         32768, std::numeric_limits<std::uint32_t>::max()};
+    device_limits limits{std::uint64_t{1} << 46,
+                         16,
+                         std::numeric_limits<std::uint32_t>::max(),
+                         32768,
+                         std::numeric_limits<std::uint32_t>::max(),
+                         4096};
 };
 
 class device {
@@ -32,6 +38,7 @@ class device {
     using backend_tag = skybark::backend_tag;
     using buffer = cpu::buffer;
     using image = cpu::image;
+    using volume = cpu::volume;
     using recorder = cpu::recorder;
 
     device() : device(device_options{}) {}
@@ -82,6 +89,28 @@ class device {
         return image(std::move(memory), what);
     }
 
+    /// Fails where the volume is larger than the limits or the machine's memory.
+    [[nodiscard]] result<volume> create_volume(volume_description what) {
+        const std::string sides = std::to_string(what.width) + " x " + std::to_string(what.height) +
+                                  " x " + std::to_string(what.depth);
+        if (what.width == 0 || what.height == 0 || what.depth == 0 ||
+            std::max({what.width, what.height, what.depth}) > limits_.max_volume_size) {
+            return fail(error_code::out_of_memory, "The cpu backend cannot make a volume of " +
+                                                       sides + " voxels; each side must be 1 to " +
+                                                       std::to_string(limits_.max_volume_size) +
+                                                       ".");
+        }
+        detail::memory memory = what.size_bytes() <= detail::memory_of_machine()
+                                    ? detail::allocate_zeroed(what.size_bytes())
+                                    : nullptr;
+        if (!memory) {
+            return fail(error_code::out_of_memory,
+                        "The cpu backend could not allocate a volume of " + sides + " voxels, " +
+                            std::to_string(what.size_bytes()) + " bytes.");
+        }
+        return volume(std::move(memory), what);
+    }
+
     [[nodiscard]] result<void> upload(const buffer& to, std::uint64_t offset,
                                       std::span<const std::byte> bytes) {
         copy_bytes(to.data() + offset, bytes.data(), bytes.size());
@@ -106,8 +135,25 @@ class device {
         return {};
     }
 
+    [[nodiscard]] result<void> upload(const volume& to, std::span<const std::byte> bytes) {
+        copy_bytes(to.data(), bytes.data(), std::min<std::uint64_t>(bytes.size(), to.size_bytes()));
+        traffic_.up += bytes.size();
+        return {};
+    }
+    [[nodiscard]] result<void> download(const volume& from, std::span<std::byte> bytes) {
+        copy_bytes(bytes.data(), from.data(),
+                   std::min<std::uint64_t>(bytes.size(), from.size_bytes()));
+        traffic_.down += bytes.size();
+        return {};
+    }
+
     [[nodiscard]] result<cpu::recorder> begin();
     [[nodiscard]] result<void> submit(cpu::recorder& recorder);
+
+    /// How many tasks it is worth cutting work into, where each has memory of its own.
+    [[nodiscard]] std::uint32_t workers() const {
+        return pool_ ? pool_->threads() : std::max(1u, std::thread::hardware_concurrency());
+    }
 
     /// Runs tasks 0 … count − 1 on the device's threads.
     template <class Task>
@@ -166,10 +212,13 @@ class device {
     device_traffic traffic_;
     detail::memory kept_;
     raster_scratch raster_;
+    layer_scratch layers_;
+    sort_scratch sort_;
     std::vector<std::uint64_t> counts_;
 };
 
-/// Appends patterns; on this backend each is done when its call returns.
+/// Appends patterns; on this backend each is done when its call returns. One that has no memory to
+/// work in is an error at submit.
 class recorder {
   public:
     using device = cpu::device;
@@ -253,12 +302,139 @@ class recorder {
               const image_bindings<device, K>& images, const draw_geometry<device>& geometry,
               const draw_target<device>& target, draw_state state) {
         with_spans<K>(buffers, [&](auto... spans) {
-            rasterise(*device_, device_->raster_, kernel, images, geometry, target, state,
+            rasterise(*device_, device_->raster_, kernel, images, grids{}, geometry, target, state,
                       spans...);
         });
     }
 
+    template <draw_kernel K>
+    requires names_volumes<K>
+    void draw(const K& kernel, const bindings<device, K>& buffers,
+              const image_bindings<device, K>& images, const volume_bindings<device, K>& volumes,
+              const draw_geometry<device>& geometry, const draw_target<device>& target,
+              draw_state state) {
+        with_spans<K>(buffers, [&](auto... spans) {
+            rasterise(*device_, device_->raster_, kernel, images, grids::of<device, K>(volumes),
+                      geometry, target, state, spans...);
+        });
+    }
+
+    template <grid_map_kernel K>
+    void map(const K& kernel, const bindings<device, K>& buffers,
+             const volume_bindings<device, K>& volumes, range elements) {
+        with_spans<K>(buffers, [&](auto... spans) {
+            const grids bound = grids::of<device, K>(volumes);
+            device_->for_pieces(elements.count, 256, [&](std::uint64_t first, std::uint64_t count) {
+                program<K>::map(kernel,
+                                range{static_cast<std::uint32_t>(elements.first + first),
+                                      static_cast<std::uint32_t>(count)},
+                                bound, spans...);
+            });
+        });
+    }
+
+    template <voxel_kernel K>
+    void map_voxels(const K& kernel, const bindings<device, K>& buffers,
+                    const volume_bindings<device, K>& volumes, glm::uvec3 extent) {
+        if (extent.x == 0 || extent.y == 0) {
+            return;
+        }
+        with_spans<K>(buffers, [&](auto... spans) {
+            const grids bound = grids::of<device, K>(volumes);
+            const std::uint64_t rows = std::uint64_t{extent.y} * extent.z;
+            const std::uint64_t grain = 1 + 1023 / extent.x;
+            device_->for_pieces(rows, grain, [&](std::uint64_t first, std::uint64_t count) {
+                for (std::uint64_t row = first; row < first + count; ++row) {
+                    program<K>::voxels(
+                        kernel,
+                        {0, static_cast<int>(row % extent.y), static_cast<int>(row / extent.y)},
+                        extent.x, bound, spans...);
+                }
+            });
+        });
+    }
+
+    /// All routes are the direct one here.
+    template <slab_kernel K>
+    void accumulate(const K& kernel, const bindings<device, K>& buffers, range elements,
+                    const accumulation<device>& how) {
+        with_spans<K>(buffers, [&](auto... spans) {
+            slab_bins<K, decltype(spans)...> bins(kernel, spans...);
+            if (going() && !accumulate_layers(*device_, device_->layers_, bins, elements, *how.into,
+                                              how.clear)) {
+                out_of_memory("accumulate");
+            }
+        });
+    }
+
+    template <slab_kernel K>
+    void accumulate(const K& kernel, const bindings<device, K>& buffers,
+                    const counted<device>& elements, const accumulation<device>& how) {
+        accumulate(kernel, buffers, range{0, length_of(elements)}, how);
+    }
+
+    template <slab_kernel K>
+    void accumulate_scan(const K& kernel, const bindings<device, K>& buffers, range elements,
+                         const volume& scratch, const volume& to, const volume_scan& how) {
+        with_spans<K>(buffers, [&](auto... spans) {
+            slab_bins<K, decltype(spans)...> bins(kernel, spans...);
+            if (how.axis != scan_axis::y || elements.count > bins.batch()) {
+                accumulate(kernel, buffers, elements, accumulation<device>{&scratch, true, {}, {}});
+                scan(scratch, to, how);
+            } else if (going() && !accumulate_and_scan_layers(*device_, device_->layers_, bins,
+                                                              elements, to, how)) {
+                out_of_memory("accumulate_scan");
+            }
+        });
+    }
+
+    void scan(const volume& from, const volume& to, const volume_scan& how) {
+        if (going()) {
+            scan_volume(*device_, from, to, how);
+        }
+    }
+
+    void scan(const buffer_view<device>& words, const buffer_view<device>& total) {
+        std::uint32_t sum = 0;
+        if (going() && !scan_words(*device_, device_->sort_, words_of(words), sum)) {
+            out_of_memory("scan");
+        }
+        std::memcpy(total.buffer->data() + total.offset, &sum, sizeof sum);
+    }
+
+    void sort(const buffer_view<device>& keys, const buffer_view<device>& values) {
+        sort_first(keys, values, std::numeric_limits<std::uint32_t>::max());
+    }
+
+    void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+              const counted<device>& pairs) {
+        sort_first(keys, values, length_of(pairs));
+    }
+
   private:
+    friend class cpu::device;
+
+    /// Whether nothing has gone wrong yet.
+    [[nodiscard]] bool going() const { return !error_; }
+    void out_of_memory(const char* pattern) {
+        error_ = error{error_code::out_of_memory,
+                       std::string("The cpu backend has no memory to ") + pattern + " in."};
+    }
+
+    [[nodiscard]] static std::span<std::uint32_t> words_of(const buffer_view<device>& view) {
+        return records_of<device, std::span<std::uint32_t>>(view);
+    }
+
+    void sort_first(const buffer_view<device>& keys, const buffer_view<device>& values,
+                    std::uint64_t most) {
+        const auto k = words_of(keys);
+        const auto v = words_of(values);
+        const std::size_t count = std::min<std::uint64_t>({k.size(), v.size(), most});
+        if (going() && !sort_pairs(*device_, device_->sort_, k.first(count), v.first(count))) {
+            out_of_memory("sort");
+        }
+    }
+
     /// Calls `work` with a span for each view.
     template <class K, class Work>
     static void with_spans(const bindings<device, K>& buffers, Work&& work) {
@@ -401,9 +577,15 @@ class recorder {
     }
 
     device* device_;
+    std::optional<error> error_;
 };
 
 inline result<recorder> device::begin() { return recorder(*this); }
-inline result<void> device::submit(recorder&) { return {}; }
+inline result<void> device::submit(recorder& done) {
+    if (done.error_) {
+        return failure(*done.error_);
+    }
+    return {};
+}
 
 } // namespace skybark::cpu

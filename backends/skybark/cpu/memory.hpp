@@ -1,11 +1,16 @@
 #pragma once
-// Buffers and images of the CPU backend: plain memory, ours or the caller's.
+// Buffers, images and volumes of the CPU backend: plain memory, ours or the caller's.
 
 #include <skybark/core/backend.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+
+#if __has_include(<unistd.h>)
+#    include <unistd.h>
+#endif
 
 namespace skybark::cpu {
 
@@ -28,6 +33,43 @@ using memory = std::unique_ptr<void, free_memory>;
     std::size_t space = memory_alignment;
     return static_cast<std::byte*>(std::align(memory_alignment, 0, aligned, space));
 }
+
+/// What the machine has, in bytes; as much as there may be where it does not say. Systems promise
+/// more than they have, and end the program that takes it.
+[[nodiscard]] inline std::uint64_t memory_of_machine() {
+#if defined(_SC_PHYS_PAGES) && defined(_SC_PAGESIZE)
+    const long pages = sysconf(_SC_PHYS_PAGES);
+    const long size = sysconf(_SC_PAGESIZE);
+    if (pages > 0 && size > 0) {
+        return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(size);
+    }
+#endif
+    return std::uint64_t{1} << 46;
+}
+
+/// Memory that calls use again. It grows and never shrinks.
+class scratch_memory {
+  public:
+    /// Room for `count` values, of undefined content; null where there is no memory.
+    template <class T>
+    [[nodiscard]] T* room_for(std::uint64_t count) {
+        if (count > most_bytes / sizeof(T)) {
+            return nullptr;
+        }
+        const std::uint64_t bytes = count * sizeof(T);
+        if (!owned_ || bytes > size_) {
+            owned_.reset();
+            size_ = std::max<std::uint64_t>(bytes, std::min(most_bytes, size_ + size_ / 2));
+            owned_ = allocate_zeroed(size_);
+        }
+        return owned_ ? reinterpret_cast<T*>(align_up(owned_.get())) : nullptr;
+    }
+
+  private:
+    static constexpr std::uint64_t most_bytes = std::uint64_t{1} << 46;
+    memory owned_;
+    std::uint64_t size_ = 0;
+};
 } // namespace detail
 
 /// A buffer: zeroed memory of its own (`device::create_buffer`), or a view of the caller's
@@ -79,6 +121,31 @@ class image {
     detail::memory owned_;
     std::byte* data_ = nullptr;
     image_description what_;
+};
+
+/// A volume: voxels without gaps, x fastest, then y, then z.
+class volume {
+  public:
+    volume() = default;
+    volume(detail::memory owned, volume_description what)
+        : owned_(std::move(owned)), data_(detail::align_up(owned_.get())), what_(what) {}
+
+    /// The caller's memory of `what.size_bytes()`, 16-byte aligned; it must outlive the volume.
+    [[nodiscard]] static volume wrap(std::span<std::byte> memory, volume_description what) {
+        volume wrapped;
+        wrapped.data_ = memory.data();
+        wrapped.what_ = what;
+        return wrapped;
+    }
+
+    [[nodiscard]] volume_description description() const noexcept { return what_; }
+    [[nodiscard]] std::byte* data() const noexcept { return data_; }
+    [[nodiscard]] std::uint64_t size_bytes() const noexcept { return what_.size_bytes(); }
+
+  private:
+    detail::memory owned_;
+    std::byte* data_ = nullptr;
+    volume_description what_;
 };
 
 /// The records of a view.

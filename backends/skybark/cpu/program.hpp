@@ -5,18 +5,71 @@
 
 #include <skybark/cpu/sinks.hpp>
 
+#include <algorithm>
+
 namespace skybark::cpu {
+
+/// A layer of constant z of a volume of int32, x fastest.
+struct layer_sums {
+    std::int32_t* sums;
+    std::uint32_t width;
+    std::uint32_t height;
+
+    /// Adds; what leaves the 32 bits comes back in at their other end, as on GPUs.
+    void add(std::uint64_t at, std::int32_t amount) const {
+        sums[at] = static_cast<std::int32_t>(static_cast<std::uint32_t>(sums[at]) +
+                                             static_cast<std::uint32_t>(amount));
+    }
+};
 
 /// What there is without a specialisation. One that says `keeps_what_it_counts` also has `keep`,
 /// which writes the triangles of a few elements to memory in the caches and counts them by that:
 /// for kernels whose count costs as much as their triangles.
 template <class K>
 struct plain_program {
-    /// Maps over consecutive elements.
+    /// Maps over consecutive elements. Where the kernel names volumes, the first of the spans is
+    /// the `grids` that read and write them.
     template <class... Spans>
     static void map(const K& kernel, range elements, Spans... spans) {
         for (std::uint32_t i = elements.first; i < elements.first + elements.count; ++i) {
             kernel.map(i, spans...);
+        }
+    }
+
+    /// Maps over `count` voxels in a row, from `first` along x.
+    template <class Grids, class... Spans>
+    static void voxels(const K& kernel, glm::ivec3 first, std::uint32_t count, const Grids& grids,
+                       Spans... spans) {
+        for (std::uint32_t i = 0; i < count; ++i) {
+            kernel.voxel({first.x + static_cast<int>(i), first.y, first.z}, grids, spans...);
+        }
+    }
+
+    /// Adds one slab to the layer that it lies in.
+    template <class... Spans>
+    static void add_slab(const K& kernel, std::uint32_t element, std::uint32_t slab,
+                         const layer_sums& to, Spans... spans) {
+        const voxel_slab s = kernel.slab(element, slab, spans...);
+        const int left = std::max(s.low.x, 0);
+        const int right = std::min(s.high.x, static_cast<int>(to.width));
+        const int low = std::max(s.low.y, 0);
+        const int high = std::min(s.high.y, static_cast<int>(to.height));
+        // Some columns at a time, so that the inner loop runs over neighbours.
+        constexpr int some = 32;
+        float lateral[some];
+        for (int x = left; x < right; x += some) {
+            const int columns = std::min(some, right - x);
+            for (int i = 0; i < columns; ++i) {
+                lateral[i] = kernel.lateral(element, x + i, s.slice, spans...);
+            }
+            for (int y = low; y < high; ++y) {
+                const std::uint64_t row =
+                    static_cast<std::uint64_t>(y) * to.width + static_cast<std::uint64_t>(x);
+                for (int i = 0; i < columns; ++i) {
+                    to.add(row + static_cast<std::uint64_t>(i),
+                           kernel.amount(element, lateral[i], y, spans...));
+                }
+            }
         }
     }
 

@@ -7,6 +7,7 @@
 // all of them in order.
 
 #include <skybark/core/backend.hpp>
+#include <skybark/cpu/grids.hpp>
 #include <skybark/cpu/memory.hpp>
 
 #include <algorithm>
@@ -313,11 +314,11 @@ inline void store_pixel(const image& to, std::uint64_t index, const glm::vec4& v
 
 } // namespace raster
 
-/// How fragment functions read the bound images.
+/// How fragment functions read the bound images and volumes.
 template <class Images>
-class image_reader {
+class image_reader : public grids {
   public:
-    explicit image_reader(const Images& images) : images_(&images) {}
+    image_reader(const Images& images, const grids& volumes) : grids(volumes), images_(&images) {}
 
     [[nodiscard]] glm::ivec2 size(std::uint32_t n) const {
         const image_description what = (*images_)[n].image->description();
@@ -394,8 +395,9 @@ void clear(Device& device, const draw_target<Device>& target, viewport size) {
 /// Draws triangles with kernel `K`: see the contract in skybark/core/backend.hpp.
 template <class Device, draw_kernel K, class... Spans>
 void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
-               const image_bindings<Device, K>& images, const draw_geometry<Device>& geometry,
-               const draw_target<Device>& target, draw_state state, Spans... spans) {
+               const image_bindings<Device, K>& images, const grids& volumes,
+               const draw_geometry<Device>& geometry, const draw_target<Device>& target,
+               draw_state state, Spans... spans) {
     using namespace raster;
     using varyings = std::array<glm::vec4, K::varyings>;
     const image* sized = target.color != nullptr ? target.color : target.depth;
@@ -413,7 +415,7 @@ void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
     const auto vertex_number = [&](std::uint32_t i) {
         return geometry.base_vertex + (indices.empty() ? i : indices[i]);
     };
-    const image_reader reader(images);
+    const image_reader reader(images, volumes);
     float* const depth =
         target.depth != nullptr ? reinterpret_cast<float*>(target.depth->data()) : nullptr;
 

@@ -1,0 +1,196 @@
+#pragma once
+// Running sums along an axis of a volume.
+//
+// Along y and z whole rows of x are summed at once, 512 voxels wide at most, so that the sums stay
+// in the nearest cache and the inner loop runs over neighbours. Every voxel's sum is made in the
+// order of the axis, whatever the strips and the threads.
+
+#include <skybark/cpu/half.hpp>
+#include <skybark/cpu/memory.hpp>
+
+#include <array>
+#include <type_traits>
+
+namespace skybark::cpu {
+namespace sums {
+
+/// How `In` is summed and becomes `Out`.
+template <class In, class Out, scan_share Share>
+struct step {
+    using in = In;
+    using out = Out;
+
+    /// What the voxel becomes whose own value is `own`; `before` is the sum of those before it, and
+    /// then that of those before the next.
+    [[nodiscard]] static Out take(In& before, In own, float scale) {
+        const In past = before;
+        before = add(past, own);
+        if constexpr (std::is_same_v<Out, std::int32_t>) {
+            (void)scale;
+            return Share == scan_share::none ? past : before;
+        } else {
+            float sum = 0;
+            if constexpr (Share == scan_share::whole) {
+                sum = static_cast<float>(before);
+            } else if constexpr (Share == scan_share::none) {
+                sum = static_cast<float>(past);
+            } else {
+                sum = static_cast<float>(past) + 0.5f * static_cast<float>(own);
+            }
+            if constexpr (std::is_same_v<Out, half>) {
+                return to_half(sum * scale);
+            } else {
+                return sum * scale;
+            }
+        }
+    }
+
+  private:
+    [[nodiscard]] static In add(In a, In b) {
+        if constexpr (std::is_same_v<In, std::int32_t>) {
+            return static_cast<In>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+        } else {
+            return a + b;
+        }
+    }
+};
+
+/// Rows of voxels, one after another along the axis.
+template <class T>
+struct sheet {
+    T* data;
+    std::uint64_t stride; ///< from a row to the next
+    std::uint32_t rows;
+    std::uint32_t columns;
+
+    [[nodiscard]] T* row(std::uint32_t i, bool descending) const {
+        return data + (descending ? rows - 1 - i : i) * stride;
+    }
+};
+
+/// Sums down the rows of a sheet; `to` has the strides of the destination.
+template <class Step>
+void along_rows(const sheet<const typename Step::in>& from, const sheet<typename Step::out>& to,
+                bool descending, float scale) {
+    constexpr std::uint32_t strip = 512;
+    std::array<typename Step::in, strip> before;
+    for (std::uint32_t first = 0; first < from.columns; first += strip) {
+        const std::uint32_t columns = std::min(strip, from.columns - first);
+        before.fill(0);
+        for (std::uint32_t i = 0; i < from.rows; ++i) {
+            const typename Step::in* const own = from.row(i, descending) + first;
+            typename Step::out* const out = to.row(i, descending) + first;
+            for (std::uint32_t x = 0; x < columns; ++x) {
+                out[x] = Step::take(before[x], own[x], scale);
+            }
+        }
+    }
+}
+
+/// Sums along a row.
+template <class Step>
+void along_row(const typename Step::in* from, typename Step::out* to, std::uint32_t columns,
+               bool descending, float scale) {
+    typename Step::in before = 0;
+    for (std::uint32_t i = 0; i < columns; ++i) {
+        const std::uint32_t x = descending ? columns - 1 - i : i;
+        to[x] = Step::take(before, from[x], scale);
+    }
+}
+
+/// Every voxel of a row for itself.
+template <class Step>
+void each_of_row(const typename Step::in* from, typename Step::out* to, std::uint32_t columns,
+                 float scale) {
+    for (std::uint32_t x = 0; x < columns; ++x) {
+        typename Step::in before = 0;
+        to[x] = Step::take(before, from[x], scale);
+    }
+}
+
+/// The volumes' voxels with the types that their formats have, and the share: calls
+/// `work.template operator()<step<…>>()`. Nothing where the contract has no such scan.
+template <class In, class Out, class Work>
+void with_share(scan_share share, Work&& work) {
+    if (share == scan_share::whole) {
+        work.template operator()<step<In, Out, scan_share::whole>>();
+    } else if (share == scan_share::none) {
+        work.template operator()<step<In, Out, scan_share::none>>();
+    } else if constexpr (!std::is_same_v<Out, std::int32_t>) {
+        work.template operator()<step<In, Out, scan_share::half>>();
+    }
+}
+template <class Work>
+void with_step_from_int32(volume_format to, scan_share share, Work&& work) {
+    if (to == volume_format::int32) {
+        with_share<std::int32_t, std::int32_t>(share, work);
+    } else if (to == volume_format::float32) {
+        with_share<std::int32_t, float>(share, work);
+    } else {
+        with_share<std::int32_t, half>(share, work);
+    }
+}
+template <class Work>
+void with_step(volume_format from, volume_format to, scan_share share, Work&& work) {
+    if (from == volume_format::int32) {
+        with_step_from_int32(to, share, work);
+    } else if (from == volume_format::float32 && to == volume_format::float32) {
+        with_share<float, float>(share, work);
+    } else if (from == volume_format::float32 && to == volume_format::float16) {
+        with_share<float, half>(share, work);
+    }
+}
+
+/// The scan along y of one layer.
+template <class Step>
+void layer_along_y(const typename Step::in* in, typename Step::out* out,
+                   const volume_description& what, const volume_scan& how) {
+    along_rows<Step>({in, what.width, what.height, what.width},
+                     {out, what.width, what.height, what.width},
+                     how.direction == scan_direction::descending, how.scale);
+}
+
+} // namespace sums
+
+/// The scan of a volume into another: see the contract in skybark/core/backend.hpp.
+template <class Device>
+void scan_volume(Device& device, const volume& from, const volume& to, const volume_scan& how) {
+    const volume_description what = from.description();
+    const std::uint64_t layer = std::uint64_t{what.width} * what.height;
+    const bool descending = how.direction == scan_direction::descending;
+    sums::with_step(what.format, to.description().format, how.share, [&]<class Step>() {
+        const auto* const in = reinterpret_cast<const typename Step::in*>(from.data());
+        auto* const out = reinterpret_cast<typename Step::out*>(to.data());
+        if (how.axis == scan_axis::y) {
+            device.for_pieces(what.depth, 1, [&](std::uint64_t first, std::uint64_t count) {
+                for (std::uint64_t z = first; z < first + count; ++z) {
+                    sums::layer_along_y<Step>(in + z * layer, out + z * layer, what, how);
+                }
+            });
+        } else if (how.axis == scan_axis::z) {
+            device.for_pieces(what.height, 1, [&](std::uint64_t first, std::uint64_t count) {
+                for (std::uint64_t row = first * what.width; row < (first + count) * what.width;
+                     row += what.width) {
+                    sums::along_rows<Step>({in + row, layer, what.depth, what.width},
+                                           {out + row, layer, what.depth, what.width}, descending,
+                                           how.scale);
+                }
+            });
+        } else {
+            const std::uint64_t rows = std::uint64_t{what.height} * what.depth;
+            device.for_pieces(rows, 16, [&](std::uint64_t first, std::uint64_t count) {
+                for (std::uint64_t row = first * what.width; row < (first + count) * what.width;
+                     row += what.width) {
+                    if (how.axis == scan_axis::x) {
+                        sums::along_row<Step>(in + row, out + row, what.width, descending,
+                                              how.scale);
+                    } else {
+                        sums::each_of_row<Step>(in + row, out + row, what.width, how.scale);
+                    }
+                }
+            });
+        }
+    });
+}
+
+} // namespace skybark::cpu
