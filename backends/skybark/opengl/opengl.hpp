@@ -20,6 +20,9 @@
 #include <skybark/opengl/programs/develop.hpp>
 #include <skybark/opengl/programs/grid_impulse.hpp>
 #include <skybark/opengl/programs/grid_wind.hpp>
+#include <skybark/opengl/programs/harris_order.hpp>
+#include <skybark/opengl/programs/harris_read.hpp>
+#include <skybark/opengl/programs/harris_splat.hpp>
 #include <skybark/opengl/programs/hermite_branch.hpp>
 #include <skybark/opengl/programs/leaf_blade.hpp>
 #include <skybark/opengl/programs/lit_bark.hpp>

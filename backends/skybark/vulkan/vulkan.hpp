@@ -16,6 +16,9 @@
 #include <skybark/vulkan/programs/develop.hpp>
 #include <skybark/vulkan/programs/grid_impulse.hpp>
 #include <skybark/vulkan/programs/grid_wind.hpp>
+#include <skybark/vulkan/programs/harris_order.hpp>
+#include <skybark/vulkan/programs/harris_read.hpp>
+#include <skybark/vulkan/programs/harris_splat.hpp>
 #include <skybark/vulkan/programs/hermite_branch.hpp>
 #include <skybark/vulkan/programs/leaf_blade.hpp>
 #include <skybark/vulkan/programs/lit_bark.hpp>

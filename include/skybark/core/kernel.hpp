@@ -10,7 +10,7 @@
 // `using buffers = buffer_list<readonly<A>, writeonly<B>, …>` names up to eight buffers. The member
 // functions take one span for each of them, in that order, after their own arguments. One buffer
 // may be bound to a readonly and to a writeonly slot, if what is read and what is written are
-// apart.
+// apart, or where nobody but the element itself reads what it writes.
 //
 //   map         void map(uint32 i, spans…) const
 //   expand      Elements become strips of triangles, in order. `strips()` and `strip_triangles()`

@@ -20,6 +20,7 @@ using glm::cos;
 using glm::exp;
 using glm::floor;
 using glm::floatBitsToInt;
+using glm::floatBitsToUint;
 using glm::intBitsToFloat;
 using glm::ivec2;
 using glm::ivec3;
