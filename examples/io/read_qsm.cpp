@@ -16,35 +16,6 @@ constexpr std::array<std::string_view, 9> wanted{"startX", "startY", "startZ", "
                                                  "endZ",   "radius", "ID",     "parentID"};
 enum column : std::size_t { start_x, end_x = 3, radius_m = 6, id, parent_id, column_count };
 
-/// Takes the next field off a line; false at its end.
-bool next_field(std::string_view& line, bool& more, char separator, std::string_view& field) {
-    if (!more)
-        return false;
-    std::size_t from = 0;
-    const std::size_t first = line.find_first_not_of(' ');
-    if (first != std::string_view::npos && line[first] == '"') {
-        const std::size_t close = line.find('"', first + 1);
-        if (close != std::string_view::npos)
-            from = close; // separators inside the quotes are text
-    }
-    const std::size_t end = line.find(separator, from);
-    field = trimmed(line.substr(0, end));
-    if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
-        field = trimmed(field.substr(1, field.size() - 2));
-    more = end != std::string_view::npos;
-    line.remove_prefix(more ? end + 1 : line.size());
-    return true;
-}
-
-char separator_of(std::string_view header) {
-    char best = ',';
-    for (const char c : {';', '\t'})
-        if (std::count(header.begin(), header.end(), c) >
-            std::count(header.begin(), header.end(), best))
-            best = c;
-    return best;
-}
-
 /// Where the wanted columns are.
 struct layout {
     char separator = ',';

@@ -16,6 +16,7 @@ namespace skybark::io {
 namespace {
 
 constexpr std::uintmax_t most_bytes = std::uintmax_t{4} << 30u;
+constexpr std::size_t block_bytes = std::size_t{1} << 20u;
 
 failure fail_file(const std::string& path, std::string_view complaint) {
     return fail(error_code::bad_input, in_quotes(path) + " " + std::string(complaint));
@@ -42,13 +43,27 @@ struct close_file {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-result<std::string> load(const std::string& path) {
+using input_file = std::unique_ptr<std::FILE, close_file>;
+
+result<input_file> open_input(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
         return fail_file(path, "is a directory; expected a file.");
-    const std::unique_ptr<std::FILE, close_file> file(std::fopen(path.c_str(), "rb"));
+    input_file file(std::fopen(path.c_str(), "rb"));
     if (!file)
         return fail_file(path, "can't be opened: " + std::string(std::strerror(errno)) + ".");
+    return file;
+}
+
+failure fail_reading(const std::string& path) {
+    return fail_file(path, "can't be read: " + std::string(std::strerror(errno)) + ".");
+}
+
+result<std::string> load(const std::string& path) {
+    const auto file = open_input(path);
+    if (!file)
+        return failure(file.error());
+    std::error_code ignored;
     const std::uintmax_t size = std::filesystem::file_size(path, ignored);
     const bool known = !ignored;
     if (known && size > most_bytes)
@@ -56,20 +71,19 @@ result<std::string> load(const std::string& path) {
     std::string text;
     if (known)
         text.reserve(static_cast<std::size_t>(size) + 1);
-    constexpr std::size_t block = std::size_t{1} << 20u;
     while (true) { // by blocks, since a pipe doesn't know its size
         const std::size_t before = text.size();
-        const std::size_t room = std::max(block, text.capacity() - before);
+        const std::size_t room = std::max(block_bytes, text.capacity() - before);
         text.resize(before + room);
-        const std::size_t got = std::fread(text.data() + before, 1, room, file.get());
+        const std::size_t got = std::fread(text.data() + before, 1, room, file->get());
         text.resize(before + got);
         if (text.size() > most_bytes)
             return fail_file(path, "has more than 4 GiB; expected at most that.");
         if (got < room)
             break;
     }
-    if (std::ferror(file.get()) != 0)
-        return fail_file(path, "can't be read: " + std::string(std::strerror(errno)) + ".");
+    if (std::ferror(file->get()) != 0)
+        return fail_reading(path);
     return text;
 }
 
@@ -77,6 +91,35 @@ result<std::string> load(const std::string& path) {
 
 result<std::string> load_text(const std::string& path) {
     return within_memory(path, [&] { return load(path); });
+}
+
+result<void> load_blocks(const std::string& path,
+                         const std::function<result<void>(std::string_view)>& take) {
+    const auto file = open_input(path);
+    if (!file)
+        return failure(file.error());
+    std::string block(block_bytes, '\0');
+    while (true) {
+        const std::size_t got = std::fread(block.data(), 1, block.size(), file->get());
+        if (auto taken = take(std::string_view(block).substr(0, got)); !taken)
+            return taken;
+        if (got < block.size())
+            break;
+    }
+    if (std::ferror(file->get()) != 0)
+        return fail_reading(path);
+    return {};
+}
+
+result<std::string> load_start(const std::string& path, std::size_t bytes) {
+    const auto file = open_input(path);
+    if (!file)
+        return failure(file.error());
+    std::string start(bytes, '\0');
+    start.resize(std::fread(start.data(), 1, bytes, file->get()));
+    if (std::ferror(file->get()) != 0)
+        return fail_reading(path);
+    return start;
 }
 
 std::string in_quotes(std::string_view text) {
@@ -143,6 +186,34 @@ std::string_view next_line(std::string_view& rest) {
     if (!line.empty() && line.back() == '\r')
         line.remove_suffix(1);
     return line;
+}
+
+bool next_field(std::string_view& line, bool& more, char separator, std::string_view& field) {
+    if (!more)
+        return false;
+    std::size_t from = 0;
+    const std::size_t first = line.find_first_not_of(' ');
+    if (first != std::string_view::npos && line[first] == '"') {
+        const std::size_t close = line.find('"', first + 1);
+        if (close != std::string_view::npos)
+            from = close; // separators inside the quotes are text
+    }
+    const std::size_t end = line.find(separator, from);
+    field = trimmed(line.substr(0, end));
+    if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
+        field = trimmed(field.substr(1, field.size() - 2));
+    more = end != std::string_view::npos;
+    line.remove_prefix(more ? end + 1 : line.size());
+    return true;
+}
+
+char separator_of(std::string_view header) {
+    char best = ',';
+    for (const char c : {';', '\t'})
+        if (std::count(header.begin(), header.end(), c) >
+            std::count(header.begin(), header.end(), best))
+            best = c;
+    return best;
 }
 
 std::string_view without_mark(std::string_view text) {

@@ -18,6 +18,14 @@ namespace skybark::io {
 /// doesn't fit in memory.
 [[nodiscard]] result<std::string> load_text(const std::string& path);
 
+/// The file's bytes, handed on in blocks of 1 MiB or less: for what needn't fit in memory. Ends
+/// with the first error of `take`.
+[[nodiscard]] result<void> load_blocks(const std::string& path,
+                                       const std::function<result<void>(std::string_view)>& take);
+
+/// The first `bytes` of the file, or all that it has.
+[[nodiscard]] result<std::string> load_start(const std::string& path, std::size_t bytes);
+
 /// `text` in quotation marks for a sentence: what isn't printable UTF-8 as \xNN, cut after 60
 /// bytes.
 [[nodiscard]] std::string in_quotes(std::string_view text);
@@ -41,6 +49,14 @@ inline constexpr double most_metres = 1e9;
 
 /// Takes the first line off `rest`, without its end (LF or CRLF).
 [[nodiscard]] std::string_view next_line(std::string_view& rest);
+
+/// What separates the fields of a table with this header: a comma, a semicolon or a tab.
+[[nodiscard]] char separator_of(std::string_view header);
+
+/// Takes the next field off a line, without its quotation marks and the spaces around it; false at
+/// the line's end, which is where `more`, true at first, becomes false.
+[[nodiscard]] bool next_field(std::string_view& line, bool& more, char separator,
+                              std::string_view& field);
 
 /// Leaves out the byte order mark that some editors put before UTF-8.
 [[nodiscard]] std::string_view without_mark(std::string_view text);
