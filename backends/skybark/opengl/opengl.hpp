@@ -9,6 +9,7 @@
 
 #include <skybark/opengl/device.hpp>
 #include <skybark/opengl/programs/bark.hpp>
+#include <skybark/opengl/programs/billboard_depth.hpp>
 #include <skybark/opengl/programs/branch_cap.hpp>
 #include <skybark/opengl/programs/branch_detail.hpp>
 #include <skybark/opengl/programs/branch_join.hpp>
@@ -16,6 +17,7 @@
 #include <skybark/opengl/programs/cast_leaf_shadow.hpp>
 #include <skybark/opengl/programs/cast_shadow.hpp>
 #include <skybark/opengl/programs/clear_sky.hpp>
+#include <skybark/opengl/programs/clouded_ground.hpp>
 #include <skybark/opengl/programs/detailed_branch.hpp>
 #include <skybark/opengl/programs/develop.hpp>
 #include <skybark/opengl/programs/grid_impulse.hpp>
@@ -28,6 +30,7 @@
 #include <skybark/opengl/programs/lit_bark.hpp>
 #include <skybark/opengl/programs/lit_branch.hpp>
 #include <skybark/opengl/programs/lit_leaf.hpp>
+#include <skybark/opengl/programs/lit_puff.hpp>
 #include <skybark/opengl/programs/meadow_ground.hpp>
 #include <skybark/opengl/programs/merge_chains.hpp>
 #include <skybark/opengl/programs/merge_ends.hpp>

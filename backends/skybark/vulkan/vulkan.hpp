@@ -5,6 +5,7 @@
 #include <skybark/vulkan/transfers.hpp>
 
 #include <skybark/vulkan/programs/bark.hpp>
+#include <skybark/vulkan/programs/billboard_depth.hpp>
 #include <skybark/vulkan/programs/branch_cap.hpp>
 #include <skybark/vulkan/programs/branch_detail.hpp>
 #include <skybark/vulkan/programs/branch_join.hpp>
@@ -12,6 +13,7 @@
 #include <skybark/vulkan/programs/cast_leaf_shadow.hpp>
 #include <skybark/vulkan/programs/cast_shadow.hpp>
 #include <skybark/vulkan/programs/clear_sky.hpp>
+#include <skybark/vulkan/programs/clouded_ground.hpp>
 #include <skybark/vulkan/programs/detailed_branch.hpp>
 #include <skybark/vulkan/programs/develop.hpp>
 #include <skybark/vulkan/programs/grid_impulse.hpp>
@@ -24,6 +26,7 @@
 #include <skybark/vulkan/programs/lit_bark.hpp>
 #include <skybark/vulkan/programs/lit_branch.hpp>
 #include <skybark/vulkan/programs/lit_leaf.hpp>
+#include <skybark/vulkan/programs/lit_puff.hpp>
 #include <skybark/vulkan/programs/meadow_ground.hpp>
 #include <skybark/vulkan/programs/merge_chains.hpp>
 #include <skybark/vulkan/programs/merge_ends.hpp>

@@ -1,0 +1,33 @@
+// clang-format off
+// Made by shaders/embed.py. Edit the text in shaders/ instead.
+// sha256 11ee6c10b385929c16d331ba209d2e75576137b24677f9d8dee2107394fe5a3c
+#pragma once
+
+#include <skybark/shared/glsl.hpp>
+#include <skybark/shared/attenuation.hpp>
+
+namespace skybark::shared {
+
+// The shadow of a cloud on whatever asks: the attenuation volume read at a place in the world. For
+// a caller's own shader as well; with `volume` a sampler3D of the attenuation volume,
+//
+//     vec3 at = cloud_texel(grid, vec3(textureSize(volume, 0)), place);
+//     float sun = cloud_light(textureLod(volume, at, 0.0).x);
+//
+// with linear filtering and clamped edges, is the part of the sun's light that reaches the place:
+// above the cloud and beside it 1, below it what is left by all that lies towards the sun, however
+// far below.
+
+// Texture coordinates of a place. `voxels` are the sides of the volume in voxels.
+inline vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
+    vec3 cells = cells_of(grid, place);
+    return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
+}
+
+// The light that an attenuation leaves. Negative attenuation (the document's product can amplify)
+// is light above 1.
+inline float cloud_light(float attenuation) {
+    return attenuation < 0.0f ? 1.0f / exp_minus(-attenuation) : exp_minus(attenuation);
+}
+
+} // namespace skybark::shared
