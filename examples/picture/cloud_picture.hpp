@@ -1,0 +1,152 @@
+#pragma once
+// A picture of clouds: over a country that their shadows fall on, in the sun, under a clear sky.
+
+#include <picture/daylight.hpp>
+#include <skybark/clouds/cloud_billboards.hpp>
+#include <skybark/core/backend.hpp>
+#include <skybark/kernels/clear_sky.hpp>
+#include <skybark/kernels/clouded_ground.hpp>
+#include <skybark/kernels/develop.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/matrix.hpp>
+#include <optional>
+#include <vector>
+
+namespace skybark::picture {
+
+struct cloud_picture_options {
+    std::uint32_t width = 960;
+    std::uint32_t height = 540;
+    std::uint32_t supersampling = 1; ///< samples a pixel in each direction
+    std::optional<glm::vec3> eye;    ///< m; absent: where all of it is seen from
+    std::optional<glm::vec3> target; ///< m; with an eye
+    float field_of_view = 40;        ///< degrees, vertical
+    double sun_azimuth = 120;        ///< degrees from north, clockwise
+    double sun_elevation = 50;       ///< degrees
+    double turbidity = 2.4;          ///< 2 very clear … 10 haze
+    float air = 2.5e-5f;             ///< 1/m; what is 1/air away is hidden by 63 %
+    float exposure = 0.046f;         ///< display value 1 over radiance
+    bool ground = true;
+};
+
+/// A camera before clouds that fill the box from `low` to `high`, and the light.
+[[nodiscard]] inline kernels::scene_record cloud_scene(glm::vec3 low, glm::vec3 high,
+                                                       const cloud_picture_options& options) {
+    kernels::scene_record scene{};
+    const glm::vec3 centre = (low + high) * 0.5f;
+    const glm::vec3 half = glm::max((high - low) * 0.5f, glm::vec3(0.01f));
+    const float across = std::max(half.x, half.z);
+    const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
+    const float field = glm::radians(options.field_of_view);
+    const float reach = std::max(half.y, across / aspect) * 1.12f;
+    const float distance = reach / std::tan(field * 0.5f) + across;
+    const glm::vec3 eye = options.eye.value_or(
+        centre + glm::vec3(0.10f * distance, -0.5f * half.y, 0.99f * distance));
+    const glm::vec3 target = options.target.value_or(centre);
+    const glm::vec3 ahead = glm::normalize(target - eye);
+    const glm::vec3 above = std::abs(ahead.y) > 0.999f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
+    const float size = glm::length(half);
+    const glm::mat4 lens =
+        glm::perspectiveRH_ZO(field, aspect, 0.002f * size, 1000 * (size + distance));
+    scene.to_clip = lens * glm::lookAtRH(eye, target, above);
+    scene.from_clip = glm::inverse(scene.to_clip);
+    scene.to_shadow = glm::mat4(1);
+    scene.camera = glm::vec4(eye, 0);
+    scene.sky =
+        daylight(direction_to_sun(options.sun_azimuth, options.sun_elevation), options.turbidity);
+    set_ambient(scene, glm::vec3(0.10f, 0.12f, 0.05f));
+    return scene;
+}
+
+/// Draws clouds, picture after picture, into images that it makes once.
+template <volume_backend B>
+class cloud_painter {
+  public:
+    /// For clouds of up to `most_particles`.
+    [[nodiscard]] static result<cloud_painter>
+    create(B& device, const cloud_picture_options& options, std::uint32_t most_particles) {
+        auto puffs = cloud_billboards<B>::create(device, most_particles);
+        if (!puffs) {
+            return failure(puffs.error());
+        }
+        cloud_painter made(options, std::move(*puffs));
+        const std::uint32_t samples = std::max(1u, options.supersampling);
+        const std::uint32_t width = options.width * samples;
+        const std::uint32_t height = options.height * samples;
+        const image_description wanted[] = {{width, height, image_format::rgba32f},
+                                            {width, height, image_format::depth32f},
+                                            {options.width, options.height, image_format::rgba8}};
+        for (const image_description& what : wanted) {
+            auto image = device.create_image(what);
+            if (!image) {
+                return failure(image.error());
+            }
+            made.images_.push_back(std::move(*image));
+        }
+        auto scene = device.create_buffer(sizeof(kernels::scene_record));
+        if (!scene) {
+            return failure(scene.error());
+        }
+        made.scene_ = std::move(*scene);
+        return made;
+    }
+
+    /// Appends the drawing of a picture: the sky, the ground at the height `ground` (m), its shadow
+    /// by light.sun, and `count` particles. The lighting's `air` is that of the options.
+    void record(typename B::recorder& to, const kernels::scene_record& scene,
+                const buffer_view<B>& particles, std::uint32_t count, cloud_light_sources<B> light,
+                float ground) const {
+        to.upload(view<B>(*scene_), std::as_bytes(std::span(&scene, 1)));
+        light.lighting.air = options_.air;
+        draw_target<B> picture{&images_[0], &images_[1], glm::vec4(0), 1.0f};
+        draw_geometry<B> screen;
+        screen.count = 3;
+        to.draw(kernels::clear_sky{}, {view<B>(*scene_)}, {}, screen, picture, draw_state{});
+        picture.clear_color.reset();
+        picture.clear_depth.reset();
+        if (options_.ground) {
+            draw_geometry<B> plane;
+            plane.count = 6;
+            kernels::clouded_ground country;
+            country.grid = light.lighting.sun_grid;
+            country.height = ground;
+            country.air = options_.air;
+            volume_bindings<B, kernels::clouded_ground> shadow;
+            shadow.read = {light.sun};
+            to.draw(country, {view<B>(*scene_)}, {}, shadow, plane, picture, draw_state{});
+        }
+        puffs_.record(to, particles, count, glm::vec3(scene.camera), view<B>(*scene_), light,
+                      picture);
+        const std::uint32_t samples = std::max(1u, options_.supersampling);
+        to.draw(kernels::develop{samples, options_.exposure}, {},
+                {sampled_image<B>{&images_[0], filter_mode::nearest, wrap_mode::clamp}}, screen,
+                draw_target<B>{&images_[2], nullptr, {}, {}}, draw_state{false, false});
+    }
+
+    /// The picture: RGBA8 rows from the top.
+    [[nodiscard]] result<std::vector<std::uint8_t>> download(B& device) const {
+        std::vector<std::uint8_t> pixels(std::size_t{4} * options_.width * options_.height);
+        if (auto done = device.download(images_[2], std::as_writable_bytes(std::span(pixels)));
+            !done) {
+            return failure(done.error());
+        }
+        return pixels;
+    }
+
+    [[nodiscard]] const cloud_picture_options& options() const { return options_; }
+
+  private:
+    cloud_painter(const cloud_picture_options& options, cloud_billboards<B>&& puffs)
+        : options_(options), puffs_(std::move(puffs)) {}
+
+    cloud_picture_options options_;
+    cloud_billboards<B> puffs_;
+    std::vector<typename B::image> images_; // samples, their depth, the picture
+    std::optional<typename B::buffer> scene_;
+};
+
+} // namespace skybark::picture
