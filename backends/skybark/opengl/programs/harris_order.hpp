@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 bcb95ae1a055ecd2b45b206db436e9c5ad3f8c560bec51249eac1e369b31b016
+// sha256 4eb1351b247e10801b85d1ec7428e56aa90481a238df46b054ca205f7a22a6b0
 #pragma once
 
 #include <skybark/kernels/harris_order.hpp>
@@ -151,12 +151,12 @@ float one_minus_exp(float x)
     p = 1.0f - x * (1.0f / 2.0f) * p;
     return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
-float log_one_plus(float u)
+float log_of_sum(float sum, float less_one)
 {
     float twos = 0.0f;
-    float less = u;
-    if (u < -0.25f || u > 0.4f) {
-        int bits = floatBitsToInt(1.0f + u);
+    float less = less_one;
+    if (less_one < -0.25f || less_one > 0.4f) {
+        int bits = floatBitsToInt(max(sum, 1.2e-38f));
         int power = (bits - 0x3f3504f3) >> 23;
         less = intBitsToFloat(bits - power * 8388608) - 1.0f;
         twos = float(power);
@@ -207,8 +207,9 @@ float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light,
         return 0.0f;
     }
     float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    if (light == 2u) {
-        return -log_one_plus(p.albedo * forward * tau - one_minus_exp(tau));
+    float on = p.albedo * forward * tau;
+    if (light == 2u && on > 0.0f) {
+        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
     }
     return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
@@ -406,12 +407,12 @@ float one_minus_exp(float x)
     p = 1.0f - x * (1.0f / 2.0f) * p;
     return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
-float log_one_plus(float u)
+float log_of_sum(float sum, float less_one)
 {
     float twos = 0.0f;
-    float less = u;
-    if (u < -0.25f || u > 0.4f) {
-        int bits = floatBitsToInt(1.0f + u);
+    float less = less_one;
+    if (less_one < -0.25f || less_one > 0.4f) {
+        int bits = floatBitsToInt(max(sum, 1.2e-38f));
         int power = (bits - 0x3f3504f3) >> 23;
         less = intBitsToFloat(bits - power * 8388608) - 1.0f;
         twos = float(power);
@@ -462,8 +463,9 @@ float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light,
         return 0.0f;
     }
     float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    if (light == 2u) {
-        return -log_one_plus(p.albedo * forward * tau - one_minus_exp(tau));
+    float on = p.albedo * forward * tau;
+    if (light == 2u && on > 0.0f) {
+        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
     }
     return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }

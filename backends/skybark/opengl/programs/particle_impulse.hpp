@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 eadd71a2c7756a14fe4f3aa3bbd948e1858725d441c8217a35fd394b21ac783d
+// sha256 47d9ba4db654038c760eca3fb1dcea158b427ac689347df496cd2076f4d67409
 #pragma once
 
 #include <skybark/kernels/particle_impulse.hpp>
@@ -151,12 +151,12 @@ float one_minus_exp(float x)
     p = 1.0f - x * (1.0f / 2.0f) * p;
     return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
-float log_one_plus(float u)
+float log_of_sum(float sum, float less_one)
 {
     float twos = 0.0f;
-    float less = u;
-    if (u < -0.25f || u > 0.4f) {
-        int bits = floatBitsToInt(1.0f + u);
+    float less = less_one;
+    if (less_one < -0.25f || less_one > 0.4f) {
+        int bits = floatBitsToInt(max(sum, 1.2e-38f));
         int power = (bits - 0x3f3504f3) >> 23;
         less = intBitsToFloat(bits - power * 8388608) - 1.0f;
         twos = float(power);
@@ -207,8 +207,9 @@ float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light,
         return 0.0f;
     }
     float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    if (light == 2u) {
-        return -log_one_plus(p.albedo * forward * tau - one_minus_exp(tau));
+    float on = p.albedo * forward * tau;
+    if (light == 2u && on > 0.0f) {
+        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
     }
     return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
@@ -460,12 +461,12 @@ float one_minus_exp(float x)
     p = 1.0f - x * (1.0f / 2.0f) * p;
     return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
-float log_one_plus(float u)
+float log_of_sum(float sum, float less_one)
 {
     float twos = 0.0f;
-    float less = u;
-    if (u < -0.25f || u > 0.4f) {
-        int bits = floatBitsToInt(1.0f + u);
+    float less = less_one;
+    if (less_one < -0.25f || less_one > 0.4f) {
+        int bits = floatBitsToInt(max(sum, 1.2e-38f));
         int power = (bits - 0x3f3504f3) >> 23;
         less = intBitsToFloat(bits - power * 8388608) - 1.0f;
         twos = float(power);
@@ -516,8 +517,9 @@ float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light,
         return 0.0f;
     }
     float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    if (light == 2u) {
-        return -log_one_plus(p.albedo * forward * tau - one_minus_exp(tau));
+    float on = p.albedo * forward * tau;
+    if (light == 2u && on > 0.0f) {
+        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
     }
     return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
@@ -775,12 +777,12 @@ float one_minus_exp(float x)
     p = 1.0f - x * (1.0f / 2.0f) * p;
     return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
-float log_one_plus(float u)
+float log_of_sum(float sum, float less_one)
 {
     float twos = 0.0f;
-    float less = u;
-    if (u < -0.25f || u > 0.4f) {
-        int bits = floatBitsToInt(1.0f + u);
+    float less = less_one;
+    if (less_one < -0.25f || less_one > 0.4f) {
+        int bits = floatBitsToInt(max(sum, 1.2e-38f));
         int power = (bits - 0x3f3504f3) >> 23;
         less = intBitsToFloat(bits - power * 8388608) - 1.0f;
         twos = float(power);
@@ -831,8 +833,9 @@ float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light,
         return 0.0f;
     }
     float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    if (light == 2u) {
-        return -log_one_plus(p.albedo * forward * tau - one_minus_exp(tau));
+    float on = p.albedo * forward * tau;
+    if (light == 2u && on > 0.0f) {
+        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
     }
     return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
@@ -1106,12 +1109,12 @@ float one_minus_exp(float x)
     p = 1.0f - x * (1.0f / 2.0f) * p;
     return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
-float log_one_plus(float u)
+float log_of_sum(float sum, float less_one)
 {
     float twos = 0.0f;
-    float less = u;
-    if (u < -0.25f || u > 0.4f) {
-        int bits = floatBitsToInt(1.0f + u);
+    float less = less_one;
+    if (less_one < -0.25f || less_one > 0.4f) {
+        int bits = floatBitsToInt(max(sum, 1.2e-38f));
         int power = (bits - 0x3f3504f3) >> 23;
         less = intBitsToFloat(bits - power * 8388608) - 1.0f;
         twos = float(power);
@@ -1162,8 +1165,9 @@ float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light,
         return 0.0f;
     }
     float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    if (light == 2u) {
-        return -log_one_plus(p.albedo * forward * tau - one_minus_exp(tau));
+    float on = p.albedo * forward * tau;
+    if (light == 2u && on > 0.0f) {
+        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
     }
     return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 9c6e5de03320a5a7ee8070653c6a6acde3f9d7fbb0347f40bf79548f1755dc6c
+// sha256 12ccdb2e7181d0a8e7f4e2753a001be1790a8a3a4db31e9489f95cbadfcf7933
 #pragma once
 
 #include <skybark/kernels/grid_impulse.hpp>

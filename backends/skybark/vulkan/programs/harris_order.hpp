@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 19e223c46ca38a20983d9eac2cfd5de35a6f9ec67e8a7f24a499d81d6a8902a1
+// sha256 c8f5b8de75e410e37b2fe37042469c0d6b179d1efa04ab9cddd908f0a42fa8a4
 #pragma once
 
 #include <skybark/kernels/harris_order.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 eb6d5a07f168f20353ae817ed3e6d2e55f59c6a218e7e501df397a85f75a4558
+// sha256 bdf58c3fcbbec0d0c08cc67d3b5cf06c31be68a3fcbfca9cd1f5d2c904c1b06d
 #pragma once
 
 #include <skybark/kernels/harris_read.hpp>

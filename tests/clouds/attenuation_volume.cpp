@@ -1,0 +1,701 @@
+// The attenuation volume against sums in double precision, and what must not change it: the order
+// of the particles, how the cloud is cut, where it is turned, and what was lit before.
+#include "../support/devices.hpp"
+
+#include <skybark/clouds/attenuation_volume.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+namespace {
+
+using namespace skybark;
+
+constexpr glm::vec3 slanting{0.4f, 0.7f, -0.3f};
+
+/// Particles in a ball of radius 1 (m), radii in [smallest, largest].
+std::vector<cloud_particle> ball(std::size_t count, float smallest, float largest, float depth,
+                                 unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    std::uniform_real_distribution<float> radius(smallest, largest);
+    std::vector<cloud_particle> particles;
+    while (particles.size() < count) {
+        const glm::vec3 at(unit(random), unit(random), unit(random));
+        if (glm::dot(at, at) <= 1) {
+            cloud_particle p;
+            p.position = at;
+            p.radius = radius(random);
+            p.optical_depth = depth;
+            p.albedo = 0.9f + 0.1f * unit(random) * unit(random);
+            particles.push_back(p);
+        }
+    }
+    return particles;
+}
+
+/// The middle of a voxel in the world, from the grid's definition, in double precision.
+glm::dvec3 middle_of(const light_grid& grid, glm::dvec3 cells) {
+    glm::dvec3 place(glm::vec3(grid.anchor));
+    const glm::vec4 rows[] = {grid.row_x, grid.row_y, grid.row_z};
+    for (int a = 0; a < 3; ++a) {
+        const glm::dvec3 axis = glm::normalize(glm::dvec3(glm::vec3(rows[a])));
+        place += axis * (double(grid.voxel[a]) * (cells[a] - double(rows[a].w)));
+    }
+    return place;
+}
+
+/// What a particle takes out between a place and the sun, and whether the place lies so near to an
+/// edge of the particle that rounding decides.
+struct exact_depth {
+    double tau = 0;
+    bool on_edge = false;
+};
+exact_depth depth_of(const cloud_particle& p, glm::dvec3 at, glm::dvec3 sun,
+                     attenuation_profile profile, double sigmas = 3) {
+    const glm::dvec3 v = at - glm::dvec3(p.position);
+    const double r = double(p.radius);
+    const double height = glm::dot(v, sun);
+    const double d2 = std::max(0.0, glm::dot(v, v) - height * height);
+    const double d = std::sqrt(d2);
+    exact_depth found;
+    const double near = 1e-5 * r;
+    found.on_edge =
+        (std::abs(d - r) < near && height < r + near) ||
+        (d < r + near && (std::abs(height - r) < near ||
+                          (profile == attenuation_profile::erf && std::abs(height + r) < near)));
+    if (d >= r || height >= r) {
+        return found;
+    }
+    const double sigma = r / sigmas;
+    double part = 1;
+    if (profile == attenuation_profile::erf && height > -r) {
+        part = 0.5 * std::erfc(height / (std::numbers::sqrt2 * sigma));
+    }
+    found.tau = double(p.optical_depth) * std::exp(-d2 / (2 * sigma * sigma)) * part;
+    return found;
+}
+
+template <class B>
+result<std::vector<float>> lit(B& device, attenuation_volume<B>& volume,
+                               std::span<const cloud_particle> particles, const light_box& box) {
+    auto buffer = make_buffer<B, cloud_particle>(device, particles);
+    if (!buffer) {
+        return failure(buffer.error());
+    }
+    auto done = run(device, [&](auto& recorder) {
+        volume.relight(recorder, view<B>(*buffer), static_cast<std::uint32_t>(particles.size()),
+                       box);
+    });
+    if (!done) {
+        return failure(done.error());
+    }
+    std::vector<float> values(std::size_t{box.voxels.x} * box.voxels.y * box.voxels.z);
+    done = device.download(volume.volume(), std::as_writable_bytes(std::span(values)));
+    if (!done) {
+        return failure(done.error());
+    }
+    return values;
+}
+
+/// A fresh volume's values; fails the test where there are none.
+template <class B>
+std::vector<float> cold(B& device, std::span<const cloud_particle> particles, glm::vec3 sun,
+                        glm::uvec3 voxels, const attenuation_options& options) {
+    const auto box = fit_light_box(particles, sun, voxels);
+    auto volume = attenuation_volume<B>::create(device, voxels, options);
+    if (!box || !volume) {
+        ADD_FAILURE() << (box ? volume.error().message : box.error().message);
+        return {};
+    }
+    auto values = lit(device, *volume, particles, *box);
+    if (!values) {
+        ADD_FAILURE() << values.error().message;
+        return {};
+    }
+    return std::move(*values);
+}
+
+std::size_t index_of(glm::uvec3 voxels, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return (std::size_t{z} * voxels.y + y) * voxels.x + x;
+}
+
+class attenuation : public testing::TestWithParam<const char*> {};
+
+attenuation_options with(attenuation_method method, attenuation_profile profile,
+                         attenuation_light light = attenuation_light::extinction,
+                         float forward = 0) {
+    attenuation_options options;
+    options.method = method;
+    options.profile = profile;
+    options.light = light;
+    options.forward = forward;
+    return options;
+}
+
+/// Every way that a device has of making the volume.
+std::vector<attenuation_options> every_way(const device_limits& limits,
+                                           attenuation_profile profile) {
+    std::vector<attenuation_options> ways{with(attenuation_method::impulse_scan, profile)};
+    for (const auto polygons : {polygon_source::list, polygon_source::stage}) {
+        for (const auto policy : {padding::degenerate, padding::compact}) {
+            for (const auto route : {accumulate_route::direct, accumulate_route::tiles_copied,
+                                     accumulate_route::tiles_drawn, accumulate_route::layers}) {
+                if ((limits.accumulate_routes & route_bit(route)) != 0) {
+                    ways.push_back(with(attenuation_method::shadow_polygons, profile));
+                    ways.back().polygons = polygons;
+                    ways.back().policy = policy;
+                    ways.back().route = route;
+                    ways.back().list_bytes = 1 << 18; // several chunks
+                }
+            }
+        }
+    }
+    return ways;
+}
+
+TEST_P(attenuation, is_the_exact_sum_at_cell_centres) {
+    support::with_device(GetParam(), [](auto& device) {
+        const auto particles = ball(300, 0.05f, 0.2f, 1.5f, 1);
+        const glm::uvec3 voxels(40, 48, 36);
+        for (const auto profile : {attenuation_profile::step, attenuation_profile::erf}) {
+            for (const glm::vec3 sun : {slanting, glm::vec3(0, 1, 0), glm::vec3(1, 0, 0)}) {
+                const auto box = fit_light_box(particles, sun, voxels);
+                ASSERT_TRUE(box);
+                const auto values = cold(device, particles, sun, voxels,
+                                         with(attenuation_method::impulse_scan, profile));
+                ASSERT_EQ(values.size(), std::size_t{voxels.x} * voxels.y * voxels.z);
+                double worst = 0;
+                for (std::uint32_t z = 0; z < voxels.z; z += 3) {
+                    for (std::uint32_t y = 0; y < voxels.y; ++y) {
+                        for (std::uint32_t x = 0; x < voxels.x; x += 2) {
+                            const glm::dvec3 at = middle_of(box->grid, glm::dvec3(x, y, z) + 0.5);
+                            double tau = 0;
+                            bool edge = false;
+                            for (const cloud_particle& p : particles) {
+                                const exact_depth one =
+                                    depth_of(p, at, glm::normalize(glm::dvec3(sun)), profile);
+                                tau += one.tau;
+                                edge = edge || one.on_edge;
+                            }
+                            if (!edge) {
+                                const double off =
+                                    std::abs(double(values[index_of(voxels, x, y, z)]) - tau);
+                                worst = std::max(worst, off / std::max(1.0, tau));
+                            }
+                        }
+                    }
+                }
+                // Asked for: 1e-5 · max(1, τ).
+                EXPECT_LE(worst, 1e-5) << (profile == attenuation_profile::erf ? "erf" : "step");
+            }
+        }
+    });
+}
+
+TEST_P(attenuation, methods_agree) {
+    support::with_device(GetParam(), [](auto& device) {
+        const auto particles = ball(200, 0.05f, 0.2f, 1.5f, 2);
+        const glm::uvec3 voxels(24, 32, 20);
+        for (const auto profile : {attenuation_profile::step, attenuation_profile::erf}) {
+            const auto ways = every_way(device.limits(), profile);
+            const auto expected = cold(device, particles, slanting, voxels, ways[0]);
+            for (std::size_t w = 1; w < ways.size(); ++w) {
+                const auto values = cold(device, particles, slanting, voxels, ways[w]);
+                ASSERT_EQ(values.size(), expected.size());
+                double worst = 0;
+                for (std::size_t i = 0; i < values.size(); ++i) {
+                    worst = std::max(worst, std::abs(double(values[i]) - double(expected[i])));
+                }
+                // Whole quanta telescope to the same sums, so nothing but a compiler that rounds
+                // an exponential differently in another program could part them.
+                EXPECT_LE(worst, 1e-6) << "way " << w;
+            }
+        }
+    });
+}
+
+TEST_P(attenuation, does_not_depend_on_the_order_of_particles) {
+    support::with_device(GetParam(), [](auto& device) {
+        auto particles = ball(150, 0.05f, 0.2f, 1.5f, 3);
+        const glm::uvec3 voxels(16, 20, 16);
+        const auto ways = every_way(device.limits(), attenuation_profile::erf);
+        std::mt19937 random(5);
+        for (const attenuation_options& way : ways) {
+            const auto expected = cold(device, particles, slanting, voxels, way);
+            const auto box = fit_light_box(particles, slanting, voxels);
+            auto volume = attenuation_volume<std::remove_reference_t<decltype(device)>>::create(
+                device, voxels, way);
+            ASSERT_TRUE(volume && box);
+            for (int order = 0; order < 100; ++order) {
+                std::shuffle(particles.begin(), particles.end(), random);
+                const auto values = lit(device, *volume, particles, *box);
+                ASSERT_TRUE(values);
+                ASSERT_EQ(*values, expected) << "order " << order;
+            }
+        }
+    });
+}
+
+TEST_P(attenuation, has_no_history) {
+    support::with_device(GetParam(), [](auto& device) {
+        const auto particles = ball(150, 0.05f, 0.2f, 1.5f, 4);
+        const glm::uvec3 voxels(20, 20, 20);
+        for (const auto method :
+             {attenuation_method::impulse_scan, attenuation_method::shadow_polygons}) {
+            const attenuation_options way = with(method, attenuation_profile::erf);
+            auto volume = attenuation_volume<std::remove_reference_t<decltype(device)>>::create(
+                device, voxels, way);
+            ASSERT_TRUE(volume);
+            for (int degrees = 0; degrees < 360; degrees += 20) {
+                const double angle = degrees * std::numbers::pi / 180;
+                const glm::vec3 sun(std::cos(angle), std::sin(angle), 0);
+                const auto box = fit_light_box(particles, sun, voxels);
+                ASSERT_TRUE(box);
+                const auto values = lit(device, *volume, particles, *box);
+                ASSERT_TRUE(values);
+                EXPECT_EQ(*values, cold(device, particles, sun, voxels, way)) << degrees;
+            }
+        }
+    });
+}
+
+TEST_P(attenuation, continuum_does_not_depend_on_how_a_blob_is_cut) {
+    support::with_device(GetParam(), [](auto& device) {
+        cloud_particle whole;
+        whole.radius = 1;
+        whole.optical_depth = 10;
+        whole.albedo = 1;
+        const glm::uvec3 voxels(24, 24, 24);
+        const attenuation_options way =
+            with(attenuation_method::impulse_scan, attenuation_profile::erf,
+                 attenuation_light::continuum, 0.7225f);
+        const auto one = cold(device, std::span(&whole, 1), slanting, voxels, way);
+        const float quantum = fit_light_box(std::span(&whole, 1), slanting, voxels)->grid.voxel.w;
+        EXPECT_LE(quantum, 3e-7f);
+        for (const std::size_t n : {2u, 3u, 10u, 100u, 1000u}) {
+            cloud_particle part = whole;
+            part.optical_depth = whole.optical_depth / static_cast<float>(n);
+            const std::vector<cloud_particle> parts(n, part);
+            const auto cut = cold(device, parts, slanting, voxels, way);
+            ASSERT_EQ(cut.size(), one.size());
+            double worst = 0;
+            for (std::size_t i = 0; i < cut.size(); ++i) {
+                worst = std::max(worst, std::abs(double(cut[i]) - double(one[i])));
+            }
+            // A quantum's rounding for each part, and single precision of the depth itself.
+            EXPECT_LE(worst, double(n) * double(quantum) + 4e-6) << n << " parts";
+        }
+    });
+}
+
+TEST_P(attenuation, a_particle_cuts_np_slices_and_the_rest_is_degenerate) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        const auto particles = ball(64, 0.05f, 0.3f, 0.1f, 6);
+        const glm::uvec3 voxels(32, 32, 32);
+        const auto box = fit_light_box(particles, slanting, voxels);
+        ASSERT_TRUE(box);
+        const kernels::shadow_slab slabs{
+            attenuation_volume<B>::shade_of(attenuation_options{}, *box)};
+        const std::uint32_t most = slabs.slabs();
+        const std::size_t corners = particles.size() * most * 6;
+        auto in = make_buffer<B, cloud_particle>(device, particles);
+        auto out = device.create_buffer(corners * sizeof(kernels::shadow_corner));
+        auto count = device.create_buffer(sizeof(count_record));
+        ASSERT_TRUE(in && out && count);
+        for (const padding policy : {padding::degenerate, padding::compact}) {
+            ASSERT_TRUE(run(device, [&](auto& recorder) {
+                recorder.expand(slabs, {view<B>(*in)}, range{0, 64},
+                                {view<B>(*out), view<B>(*count), policy});
+            }));
+            std::vector<kernels::shadow_corner> list(corners);
+            count_record length;
+            ASSERT_TRUE((read_back<B, kernels::shadow_corner>(device, *out, list)));
+            ASSERT_TRUE((read_back<B, count_record>(device, *count, std::span(&length, 1))));
+            std::size_t expected_total = 0;
+            std::size_t at = 0;
+            for (const cloud_particle& p : particles) {
+                // Layers whose middle lies in the particle, from the definition of the grid.
+                const glm::dvec3 axis = glm::dvec3(glm::vec3(box->grid.row_z));
+                const double centre = glm::dot(axis, glm::dvec3(p.position) -
+                                                         glm::dvec3(glm::vec3(box->grid.anchor))) +
+                                      double(box->grid.row_z.w);
+                const double reach = double(p.radius) / double(box->grid.voxel.z);
+                std::size_t expected = 0;
+                for (std::uint32_t z = 0; z < voxels.z; ++z) {
+                    expected += std::abs(z + 0.5 - centre) < reach ? 1 : 0;
+                }
+                expected_total += expected;
+                if (policy == padding::degenerate) {
+                    std::size_t present = 0;
+                    for (std::uint32_t s = 0; s < most; ++s, at += 6) {
+                        const bool spare = std::all_of(
+                            list.begin() + static_cast<std::ptrdiff_t>(at),
+                            list.begin() + static_cast<std::ptrdiff_t>(at + 6), [](const auto& c) {
+                                return c.x == 0 && c.y == 0 && c.slice == 0 && c.particle == 0;
+                            });
+                        present += spare ? 0 : 1;
+                    }
+                    EXPECT_EQ(present, expected);
+                }
+            }
+            EXPECT_EQ(length.written, policy == padding::degenerate ? 2 * most * particles.size()
+                                                                    : 2 * expected_total);
+        }
+    });
+}
+
+TEST_P(attenuation, half_floats_err_as_stated) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        const auto particles = ball(300, 0.05f, 0.2f, 1.5f, 7);
+        const glm::uvec3 voxels(24, 24, 24);
+        attenuation_options way = with(attenuation_method::impulse_scan, attenuation_profile::erf);
+        const auto whole = cold(device, particles, slanting, voxels, way);
+        way.format = volume_format::float16;
+        const auto box = fit_light_box(particles, slanting, voxels);
+        auto volume = attenuation_volume<B>::create(device, voxels, way);
+        auto buffer = make_buffer<B, cloud_particle>(device, particles);
+        ASSERT_TRUE(box && volume && buffer);
+        ASSERT_TRUE(run(device, [&](auto& recorder) {
+            volume->relight(recorder, view<B>(*buffer), 300, *box);
+        }));
+        std::vector<std::uint16_t> halves(whole.size());
+        ASSERT_TRUE(device.download(volume->volume(), std::as_writable_bytes(std::span(halves))));
+        double worst = 0;
+        double deepest = 0;
+        for (std::size_t i = 0; i < halves.size(); ++i) {
+            const int exponent = halves[i] >> 10 & 31;
+            const double fraction = halves[i] & 1023;
+            const double value = exponent == 0 ? std::ldexp(fraction, -24)
+                                               : std::ldexp(1024 + fraction, exponent - 25);
+            worst = std::max(worst, std::abs(std::exp(-value) - std::exp(-double(whole[i]))));
+            deepest = std::max(deepest, value);
+        }
+        EXPECT_GT(deepest, 3);
+        EXPECT_LE(worst, 0.00018);
+        EXPECT_GT(worst, 0.00005);
+    });
+}
+
+INSTANTIATE_TEST_SUITE_P(backends, attenuation, testing::Values("cpu", "opengl", "vulkan"),
+                         [](const auto& backend) { return std::string(backend.param); });
+
+/// Trilinear, clamped to the edges, from cell coordinates.
+double sampled(const std::vector<float>& values, glm::uvec3 voxels, glm::dvec3 cells) {
+    double sum = 0;
+    const glm::dvec3 low = glm::floor(cells - 0.5);
+    const glm::dvec3 t = cells - 0.5 - low;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+        const glm::dvec3 weight = side * t + (1.0 - side) * (1.0 - t);
+        const glm::dvec3 at = glm::clamp(low + side, glm::dvec3(0), glm::dvec3(voxels) - 1.0);
+        sum += weight.x * weight.y * weight.z *
+               double(values[index_of(voxels, static_cast<std::uint32_t>(at.x),
+                                      static_cast<std::uint32_t>(at.y),
+                                      static_cast<std::uint32_t>(at.z))]);
+    }
+    return sum;
+}
+
+struct transmittance_errors {
+    double mean = 0;  ///< of |ΔT|
+    double bias = 0;  ///< of the mean T, relative
+    double depth = 0; ///< mean optical depth
+    double light = 0; ///< mean T of the volume
+};
+
+/// Against exact transmittance at places all over the cloud.
+transmittance_errors errors_of(const std::vector<float>& values, const light_box& box,
+                               std::span<const cloud_particle> particles, glm::vec3 sun,
+                               std::size_t places, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<std::size_t> pick(0, particles.size() - 1);
+    std::normal_distribution<double> normal;
+    transmittance_errors found;
+    double exact_sum = 0;
+    for (std::size_t k = 0; k < places; ++k) {
+        // Places as the cloud's water lies.
+        const cloud_particle& p = particles[pick(random)];
+        const glm::dvec3 at =
+            glm::dvec3(p.position) +
+            glm::dvec3(normal(random), normal(random), normal(random)) * (double(p.radius) / 3);
+        double tau = 0;
+        for (const cloud_particle& q : particles) {
+            tau += depth_of(q, at, glm::normalize(glm::dvec3(sun)), attenuation_profile::erf).tau;
+        }
+        glm::dvec3 cells;
+        const glm::vec4 rows[] = {box.grid.row_x, box.grid.row_y, box.grid.row_z};
+        for (int a = 0; a < 3; ++a) {
+            cells[a] = glm::dot(glm::dvec3(glm::vec3(rows[a])),
+                                at - glm::dvec3(glm::vec3(box.grid.anchor))) +
+                       double(rows[a].w);
+        }
+        const double light = std::exp(-sampled(values, box.voxels, cells));
+        found.mean += std::abs(light - std::exp(-tau));
+        found.light += light;
+        found.depth += tau;
+        exact_sum += std::exp(-tau);
+    }
+    const auto n = static_cast<double>(places);
+    found.bias = std::abs(found.light - exact_sum) / exact_sum;
+    found.mean /= n;
+    found.light /= n;
+    found.depth /= n;
+    return found;
+}
+
+/// The cloud of the issue: radii 4-8 % of the box's side of 2 m, mean optical depth about 7.
+std::vector<cloud_particle> blobs(unsigned seed) { return ball(4000, 0.08f, 0.16f, 0.91f, seed); }
+
+TEST(attenuation_accuracy, trilinear_transmittance) {
+    cpu::device device;
+    const auto particles = blobs(11);
+    const struct {
+        std::uint32_t side;
+        double mean;
+    } wanted[] = {{128, 0.002}, {256, 0.0005}};
+    for (const auto& [side, mean] : wanted) {
+        const glm::uvec3 voxels(side);
+        const auto values = cold(device, particles, slanting, voxels,
+                                 with(attenuation_method::impulse_scan, attenuation_profile::erf));
+        const auto box = fit_light_box(particles, slanting, voxels);
+        ASSERT_TRUE(box && !values.empty());
+        const auto errors = errors_of(values, *box, particles, slanting, 2000, 12);
+        EXPECT_NEAR(errors.depth, 7, 1.5);
+        EXPECT_LE(errors.mean, mean) << side;
+        EXPECT_LE(errors.bias, 0.01) << side;
+        std::printf("%u^3: mean |dT| %.6f, bias %.4f, mean depth %.2f, mean T %.4f\n", side,
+                    errors.mean, errors.bias, errors.depth, errors.light);
+    }
+}
+
+/// Mean T at places that turn with the cloud, for one rotation of both.
+double turned_light(cpu::device& device, std::span<const cloud_particle> still,
+                    const std::array<glm::dvec3, 3>& axes, std::uint32_t side) {
+    const auto turn = [&axes](glm::vec3 v) {
+        return glm::vec3(axes[0] * double(v.x) + axes[1] * double(v.y) + axes[2] * double(v.z));
+    };
+    std::vector<cloud_particle> particles(still.begin(), still.end());
+    for (cloud_particle& p : particles) {
+        p.position = turn(p.position);
+    }
+    const glm::vec3 sun(axes[1]);
+    const glm::uvec3 voxels(side);
+    const auto values = cold(device, particles, sun, voxels,
+                             with(attenuation_method::impulse_scan, attenuation_profile::erf));
+    const auto box = fit_light_box(particles, sun, voxels);
+    if (!box || values.empty()) {
+        return -1;
+    }
+    double sum = 0;
+    for (const cloud_particle& p : particles) {
+        glm::dvec3 cells;
+        const glm::vec4 rows[] = {box->grid.row_x, box->grid.row_y, box->grid.row_z};
+        for (int a = 0; a < 3; ++a) {
+            cells[a] = glm::dot(glm::dvec3(glm::vec3(rows[a])),
+                                glm::dvec3(p.position) - glm::dvec3(glm::vec3(box->grid.anchor))) +
+                       double(rows[a].w);
+        }
+        sum += std::exp(-sampled(values, voxels, cells));
+    }
+    return sum / static_cast<double>(particles.size());
+}
+
+void expect_no_change_by_turning(int directions, std::uint32_t side) {
+    cpu::device device;
+    const auto particles = blobs(13);
+    double least = 1;
+    double most = 0;
+    for (int k = 0; k < directions; ++k) {
+        // A Fibonacci sphere, its first six replaced by the axes themselves.
+        const double up = 1 - 2 * (k + 0.5) / directions;
+        const double turn = k * 2.399963229728653;
+        const double level = std::sqrt(1 - up * up);
+        glm::dvec3 sun(level * std::cos(turn), up, level * std::sin(turn));
+        if (k < 6) {
+            sun = glm::dvec3(0);
+            sun[k % 3] = k < 3 ? 1 : -1;
+        }
+        const glm::dvec3 other = std::abs(sun.x) > 0.5 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+        const glm::dvec3 side_axis = glm::normalize(glm::cross(other, sun));
+        const double light =
+            turned_light(device, particles, {side_axis, sun, glm::cross(side_axis, sun)}, side);
+        least = std::min(least, light);
+        most = std::max(most, light);
+    }
+    EXPECT_LE(most - least, 0.005);
+    EXPECT_GT(least, 0.01);
+    std::printf("%d directions at %u^3: mean T from %.6f to %.6f\n", directions, side, least, most);
+}
+
+TEST(attenuation_accuracy, turning_sun_and_cloud_changes_nothing) {
+    expect_no_change_by_turning(24, 96);
+}
+
+TEST(attenuation_accuracy, turning_through_a_thousand_directions_slow) {
+    expect_no_change_by_turning(1000, 256);
+}
+
+TEST(attenuation_accuracy, backends_agree) {
+    cpu::device reference;
+    const auto particles = ball(300, 0.05f, 0.2f, 1.5f, 8);
+    const glm::uvec3 voxels(32, 40, 24);
+    for (const auto light : {attenuation_light::extinction, attenuation_light::continuum,
+                             attenuation_light::product}) {
+        const auto way = with(attenuation_method::impulse_scan, attenuation_profile::erf, light,
+                              light == attenuation_light::product ? 6.5f : 0.72f);
+        const auto expected = cold(reference, particles, slanting, voxels, way);
+        for (const char* name : {"opengl", "vulkan"}) {
+            support::with_device(name, [&](auto& device) {
+                const auto values = cold(device, particles, slanting, voxels, way);
+                ASSERT_EQ(values.size(), expected.size());
+                double worst = 0;
+                for (std::size_t i = 0; i < values.size(); ++i) {
+                    worst = std::max(worst, std::abs(double(values[i]) - double(expected[i])));
+                }
+                EXPECT_LE(worst, 1e-4) << name; // asked for
+            });
+        }
+    }
+}
+
+TEST(attenuation_accuracy, product_is_the_documents) {
+    // One particle: G on its axis is e^−τ + a τ f, amplifying where f is sharp (METHODS: a thick
+    // particle can amplify light).
+    cpu::device device;
+    cloud_particle p;
+    p.radius = 1;
+    p.albedo = 0.8f;
+    for (const float tau : {0.01f, 0.5f, 2.0f, 10.0f}) {
+        for (const float f : {0.0f, 0.1074f, 6.5f}) {
+            p.optical_depth = tau;
+            const glm::uvec3 voxels(35, 16, 35);
+            const auto values =
+                cold(device, std::span(&p, 1), slanting, voxels,
+                     with(attenuation_method::impulse_scan, attenuation_profile::step,
+                          attenuation_light::product, f));
+            ASSERT_FALSE(values.empty());
+            const auto box = fit_light_box(std::span(&p, 1), slanting, voxels);
+            // The column nearest to the axis.
+            double nearest = 1e9;
+            double expected = 0;
+            float found = 0;
+            for (std::uint32_t z = 0; z < 35; ++z) {
+                for (std::uint32_t x = 0; x < 35; ++x) {
+                    const glm::dvec3 at = middle_of(box->grid, {x + 0.5, 0.5, z + 0.5});
+                    const exact_depth one = depth_of(p, at, glm::normalize(glm::dvec3(slanting)),
+                                                     attenuation_profile::step);
+                    const double off = std::abs(one.tau - double(tau));
+                    if (off < nearest) {
+                        nearest = off;
+                        expected = -std::log(std::exp(-one.tau) + 0.8 * one.tau * double(f));
+                        found = values[index_of(voxels, x, 0, z)];
+                    }
+                }
+            }
+            EXPECT_NEAR(double(found), expected, 1e-5 * std::max(1.0, std::abs(expected)))
+                << tau << " " << f;
+        }
+    }
+}
+
+TEST(light_box, is_snapped_to_the_world) {
+    auto particles = ball(200, 0.05f, 0.2f, 1.5f, 9);
+    const auto before = fit_light_box(particles, slanting, glm::uvec3(32));
+    ASSERT_TRUE(before);
+    for (cloud_particle& p : particles) {
+        p.position += glm::vec3(0.013f, 0.021f, -0.008f);
+    }
+    const auto after = fit_light_box(particles, slanting, glm::uvec3(32));
+    ASSERT_TRUE(after);
+    EXPECT_EQ(before->grid.voxel, after->grid.voxel);
+    // A place's voxel coordinates differ by whole numbers.
+    const glm::vec3 place(0.3f, -0.2f, 0.1f);
+    const glm::vec3 moved =
+        shared::cells_of(after->grid, place) - shared::cells_of(before->grid, place);
+    for (int a = 0; a < 3; ++a) {
+        EXPECT_NEAR(moved[a], std::round(moved[a]), 2e-5f);
+    }
+}
+
+TEST(light_box, keeps_a_margin_of_a_voxel) {
+    for (unsigned seed = 0; seed < 40; ++seed) {
+        std::mt19937 random(seed);
+        std::normal_distribution<float> normal;
+        const glm::vec3 sun(normal(random), normal(random), normal(random));
+        const auto particles = ball(5, 0.05f, 0.5f, 0.1f, seed);
+        const auto box = fit_light_box(particles, sun, glm::uvec3(16, 9, 4));
+        ASSERT_TRUE(box);
+        for (const cloud_particle& p : particles) {
+            const glm::vec3 at = shared::cells_of(box->grid, p.position);
+            for (int a = 0; a < 3; ++a) {
+                const float reach = p.radius / box->grid.voxel[a];
+                EXPECT_GE(at[a] - reach, 0.999f);
+                EXPECT_LE(at[a] + reach, static_cast<float>(box->voxels[a]) - 0.999f);
+            }
+        }
+    }
+}
+
+TEST(light_box, deep_clouds_get_a_coarser_quantum) {
+    std::vector<cloud_particle> particles(1000);
+    for (cloud_particle& p : particles) {
+        p.radius = 1;
+        p.optical_depth = 100;
+    }
+    const auto box = fit_light_box(particles, slanting, glm::uvec3(16));
+    ASSERT_TRUE(box);
+    EXPECT_GE(double(box->grid.voxel.w) * 2147483647.0, 1e5);
+    cpu::device device;
+    const auto values = cold(device, particles, slanting, glm::uvec3(17),
+                             with(attenuation_method::impulse_scan, attenuation_profile::step));
+    EXPECT_GT(*std::max_element(values.begin(), values.end()), 9e4f);
+    EXPECT_GE(*std::min_element(values.begin(), values.end()), 0.0f);
+}
+
+TEST(light_box, refuses_what_makes_no_sense) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinity = std::numeric_limits<float>::infinity();
+    const auto good = ball(3, 0.1f, 0.2f, 0.1f, 10);
+    const auto message = [&](auto&& spoil, glm::vec3 sun = slanting,
+                             glm::uvec3 voxels = glm::uvec3(16)) {
+        auto particles = good;
+        spoil(particles);
+        const auto box = fit_light_box(particles, sun, voxels);
+        return box ? std::string("accepted") : box.error().message;
+    };
+    const auto as_is = [](auto&) {};
+    EXPECT_EQ(message(as_is), "accepted");
+    EXPECT_EQ(message([](auto& p) { p.clear(); }),
+              "The cloud has no particles; expected one at least.");
+    EXPECT_EQ(message([&](auto& p) { p[1].radius = nan; }),
+              "Particle 1 has the radius nan; expected a number of metres above 0, up to 1e15.");
+    EXPECT_NE(message([&](auto& p) { p[2].radius = -1; }).find("Particle 2"), std::string::npos);
+    EXPECT_NE(message([&](auto& p) { p[2].radius = 0; }).find("radius"), std::string::npos);
+    EXPECT_NE(message([&](auto& p) { p[0].optical_depth = -0.1f; }).find("optical depth"),
+              std::string::npos);
+    EXPECT_NE(message([&](auto& p) { p[0].optical_depth = infinity; }).find("optical depth"),
+              std::string::npos);
+    EXPECT_NE(message([&](auto& p) { p[0].albedo = 1.5f; }).find("albedo"), std::string::npos);
+    EXPECT_NE(message([&](auto& p) { p[0].position.z = infinity; }).find("coordinate"),
+              std::string::npos);
+    EXPECT_NE(message(as_is, glm::vec3(0)).find("direction to the sun"), std::string::npos);
+    EXPECT_NE(message(as_is, glm::vec3(nan, 1, 0)).find("direction to the sun"), std::string::npos);
+    EXPECT_NE(message(as_is, slanting, glm::uvec3(16, 3, 16)).find("16 x 3 x 16"),
+              std::string::npos);
+    cpu::device device;
+    const auto huge =
+        attenuation_volume<cpu::device>::create(device, glm::uvec3(1000), attenuation_options{});
+    ASSERT_FALSE(huge);
+    EXPECT_NE(huge.error().message.find("1000 x 1000 x 1000 voxels takes 7629 MiB"),
+              std::string::npos)
+        << huge.error().message;
+}
+
+} // namespace
