@@ -2,8 +2,9 @@
 // A fourth backend in one file: plain serial loops that say what the contract means.
 //
 // It shows what somebody who brings Skybark to another device has to write: a buffer, an image, a
-// recorder with a member function for each pattern that the device can do, and the tag that
-// promises to keep the contract. 02_own_backend.cpp proves it with the conformance suite.
+// volume if it has volumes, a recorder with a member function for each pattern that the device can
+// do, and the tag that promises to keep the contract. 02_own_backend.cpp proves it with the
+// conformance suite.
 //
 // Nothing here is fast: each pattern is done when its call returns, one element after another.
 
@@ -78,23 +79,121 @@ class image {
     skybark::image_description what_;
 };
 
+/// The number in 16 bits, to the nearest, to the even one of two that are as near; from 65,520 on
+/// it is infinite.
+[[nodiscard]] inline std::uint16_t to_float16(float value) {
+    const std::uint32_t sign = std::signbit(value) ? 0x8000 : 0;
+    const float size = std::fabs(value);
+    if (!(size < 65520.0f)) {
+        return static_cast<std::uint16_t>(sign | (size == size ? 0x7c00 : 0x7e00));
+    }
+    const int exponent = std::max(std::ilogb(size), -14);
+    const auto steps = static_cast<std::uint32_t>(std::nearbyint(std::ldexp(size, 10 - exponent)));
+    // A mantissa that is rounded up to the next power of two carries into the exponent.
+    return static_cast<std::uint16_t>(sign |
+                                      ((static_cast<std::uint32_t>(exponent + 14) << 10) + steps));
+}
+[[nodiscard]] inline float from_float16(std::uint16_t bits) {
+    const int exponent = (bits >> 10) & 31;
+    const auto mantissa = static_cast<float>(bits & 0x3ff);
+    float size = 0;
+    if (exponent == 31) {
+        size = mantissa == 0 ? HUGE_VALF : NAN;
+    } else if (exponent == 0) {
+        size = std::ldexp(mantissa, -24);
+    } else {
+        size = std::ldexp(mantissa + 1024, exponent - 25);
+    }
+    return (bits & 0x8000) != 0 ? -size : size;
+}
+
+/// x runs fastest, then y, then z, without gaps.
+class volume {
+  public:
+    explicit volume(skybark::volume_description what) : memory_(what.size_bytes()), what_(what) {}
+
+    [[nodiscard]] skybark::volume_description description() const noexcept { return what_; }
+    [[nodiscard]] const bytes& memory() const noexcept { return memory_; }
+    [[nodiscard]] glm::ivec3 size() const noexcept {
+        return {what_.width, what_.height, what_.depth};
+    }
+
+    [[nodiscard]] std::int32_t load_int(glm::ivec3 at) const { return read<std::int32_t>(at); }
+    [[nodiscard]] float load(glm::ivec3 at) const {
+        return what_.format == skybark::volume_format::float16
+                   ? from_float16(read<std::uint16_t>(at))
+                   : read<float>(at);
+    }
+    void store(glm::ivec3 at, std::int32_t value) const { write(at, value); }
+    void store(glm::ivec3 at, float value) const {
+        if (what_.format == skybark::volume_format::float16) {
+            write(at, to_float16(value));
+        } else {
+            write(at, value);
+        }
+    }
+    [[nodiscard]] float sample(glm::vec3 place) const {
+        const glm::vec3 at = place * glm::vec3(size()) - 0.5f;
+        const glm::vec3 low(std::floor(at.x), std::floor(at.y), std::floor(at.z));
+        float sum = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+            glm::ivec3 voxel;
+            float share = 1;
+            for (int k = 0; k < 3; ++k) {
+                const int upper = corner >> k & 1;
+                share *= upper != 0 ? at[k] - low[k] : 1 - (at[k] - low[k]);
+                voxel[k] = std::clamp(static_cast<int>(low[k]) + upper, 0, size()[k] - 1);
+            }
+            sum += share == 0 ? 0 : share * load(voxel);
+        }
+        return sum;
+    }
+
+  private:
+    template <class T>
+    [[nodiscard]] T read(glm::ivec3 at) const {
+        T value;
+        std::memcpy(&value, memory_.data() + index(at) * sizeof(T), sizeof value);
+        return value;
+    }
+    template <class T>
+    void write(glm::ivec3 at, T value) const {
+        std::memcpy(memory_.data() + index(at) * sizeof(T), &value, sizeof value);
+    }
+    [[nodiscard]] std::uint64_t index(glm::ivec3 at) const {
+        const auto x = static_cast<std::uint64_t>(at.x);
+        const auto y = static_cast<std::uint64_t>(at.y);
+        const auto z = static_cast<std::uint64_t>(at.z);
+        return (z * what_.height + y) * what_.width + x;
+    }
+
+    bytes memory_;
+    skybark::volume_description what_;
+};
+
 class device {
   public:
     using backend_tag = skybark::backend_tag;
     using buffer = own::buffer;
     using image = own::image;
+    using volume = own::volume;
     using recorder = own::recorder;
 
     [[nodiscard]] std::string_view name() const noexcept { return "own"; }
     [[nodiscard]] std::string device_name() const { return "one thread"; }
     [[nodiscard]] skybark::device_limits limits() const noexcept {
-        return {std::uint64_t{1} << 40, 16, 0xffffffff, 16384};
+        skybark::device_limits most{std::uint64_t{1} << 40, 16, 0xffffffff, 16384};
+        most.max_volume_size = 2048;
+        return most;
     }
     [[nodiscard]] skybark::device_traffic traffic() const noexcept { return traffic_; }
 
     [[nodiscard]] skybark::result<buffer> create_buffer(std::uint64_t size) { return buffer(size); }
     [[nodiscard]] skybark::result<image> create_image(skybark::image_description what) {
         return image(what);
+    }
+    [[nodiscard]] skybark::result<volume> create_volume(skybark::volume_description what) {
+        return volume(what);
     }
 
     [[nodiscard]] skybark::result<void> upload(const buffer& to, std::uint64_t offset,
@@ -115,6 +214,12 @@ class device {
     [[nodiscard]] skybark::result<void> download(const image& from, std::span<std::byte> out) {
         return download(from.memory(), 0, out);
     }
+    [[nodiscard]] skybark::result<void> upload(const volume& to, std::span<const std::byte> in) {
+        return upload(to.memory(), 0, in);
+    }
+    [[nodiscard]] skybark::result<void> download(const volume& from, std::span<std::byte> out) {
+        return download(from.memory(), 0, out);
+    }
 
     [[nodiscard]] skybark::result<own::recorder> begin();
     [[nodiscard]] skybark::result<void> submit(own::recorder& recorder);
@@ -124,10 +229,38 @@ class device {
     skybark::device_traffic traffic_;
 };
 
-/// What a fragment function reads images with.
+/// What a kernel reads and writes volumes with.
+class grids {
+  public:
+    grids(std::span<const volume* const> read, std::span<const volume* const> write)
+        : read_(read), write_(write) {}
+
+    [[nodiscard]] glm::ivec3 size(std::uint32_t n) const { return read_[n]->size(); }
+    [[nodiscard]] float load(std::uint32_t n, glm::ivec3 at) const { return read_[n]->load(at); }
+    [[nodiscard]] float sample(std::uint32_t n, glm::vec3 place) const {
+        return read_[n]->sample(place);
+    }
+    void store(std::uint32_t n, glm::ivec3 at, float value) const { write_[n]->store(at, value); }
+
+  private:
+    std::span<const volume* const> read_;
+    std::span<const volume* const> write_;
+};
+
+/// What a fragment function reads images and volumes with.
 class images {
   public:
-    explicit images(std::span<const skybark::sampled_image<device>> bound) : bound_(bound) {}
+    images(std::span<const skybark::sampled_image<device>> bound,
+           std::span<const volume* const> volumes)
+        : bound_(bound), volumes_(volumes) {}
+
+    [[nodiscard]] glm::ivec3 volume_size(std::uint32_t n) const { return volumes_[n]->size(); }
+    [[nodiscard]] float volume_load(std::uint32_t n, glm::ivec3 at) const {
+        return volumes_[n]->load(at);
+    }
+    [[nodiscard]] float volume(std::uint32_t n, glm::vec3 place) const {
+        return volumes_[n]->sample(place);
+    }
 
     [[nodiscard]] glm::ivec2 size(std::uint32_t n) const {
         const skybark::image_description what = bound_[n].image->description();
@@ -163,6 +296,7 @@ class images {
     }
 
     std::span<const skybark::sampled_image<device>> bound_;
+    std::span<const own::volume* const> volumes_;
 };
 
 /// A vertex on its way to the pixels.
@@ -389,10 +523,119 @@ class recorder {
     }
 
     template <skybark::draw_kernel K>
+    requires(!skybark::names_volumes<K>) void draw(const K& kernel,
+                                                   const skybark::bindings<device, K>& buffers,
+                                                   const skybark::image_bindings<device, K>& bound,
+                                                   const skybark::draw_geometry<device>& geometry,
+                                                   const skybark::draw_target<device>& target,
+                                                   skybark::draw_state state) {
+        draw_reading(kernel, buffers, images(bound, {}), geometry, target, state);
+    }
+    template <skybark::draw_kernel K>
+    requires skybark::names_volumes<K>
     void draw(const K& kernel, const skybark::bindings<device, K>& buffers,
               const skybark::image_bindings<device, K>& bound,
+              const skybark::volume_bindings<device, K>& volumes,
               const skybark::draw_geometry<device>& geometry,
               const skybark::draw_target<device>& target, skybark::draw_state state) {
+        draw_reading(kernel, buffers, images(bound, volumes.read), geometry, target, state);
+    }
+
+    template <skybark::slab_kernel K>
+    void accumulate(const K& kernel, const skybark::bindings<device, K>& buffers,
+                    skybark::range elements, const skybark::accumulation<device>& to) {
+        if (to.clear) {
+            std::memset(to.into->memory().data(), 0, to.into->memory().size_bytes());
+        }
+        with_spans<K>(buffers, [&](auto... spans) {
+            for (std::uint32_t i = elements.first; i - elements.first < elements.count; ++i) {
+                for (std::uint32_t s = 0; s < kernel.slab_count(i, spans...); ++s) {
+                    add_slab(kernel, i, kernel.slab(i, s, spans...), *to.into, spans...);
+                }
+            }
+        });
+    }
+    template <skybark::slab_kernel K>
+    void accumulate(const K& kernel, const skybark::bindings<device, K>& buffers,
+                    const skybark::counted<device>& elements,
+                    const skybark::accumulation<device>& to) {
+        accumulate(kernel, buffers, skybark::range{0, length_of(elements)}, to);
+    }
+
+    /// The voxels of a line are numbered from the end where its sum begins.
+    void scan(const volume& from, const volume& to, skybark::volume_scan how) {
+        const glm::ivec3 size = from.size();
+        const int axis = how.axis == skybark::scan_axis::none
+                             ? -1
+                             : static_cast<int>(how.axis) - static_cast<int>(skybark::scan_axis::x);
+        glm::ivec3 lines = size;
+        if (axis >= 0) {
+            lines[axis] = 1;
+        }
+        for (int z = 0; z < lines.z; ++z) {
+            for (int y = 0; y < lines.y; ++y) {
+                for (int x = 0; x < lines.x; ++x) {
+                    const auto voxel = [&](int i) {
+                        glm::ivec3 at{x, y, z};
+                        if (axis >= 0) {
+                            const bool up = how.direction == skybark::scan_direction::ascending;
+                            at[axis] = up ? i : size[axis] - 1 - i;
+                        }
+                        return at;
+                    };
+                    scan_line(from, to, how, voxel, axis < 0 ? 1 : size[axis]);
+                }
+            }
+        }
+    }
+
+    void scan(const view& words, const view& total) {
+        std::uint64_t sum = 0;
+        for (std::uint32_t& word : records<std::uint32_t>(words)) {
+            sum = std::min<std::uint64_t>(
+                sum + std::exchange(word, static_cast<std::uint32_t>(sum)), 0xffffffff);
+        }
+        records<std::uint32_t>(total)[0] = static_cast<std::uint32_t>(sum);
+    }
+
+    void sort(const view& keys, const view& values) {
+        sort_first(keys, values, std::min(keys.size, values.size) / 4);
+    }
+    void sort(const view& keys, const view& values, const skybark::counted<device>& pairs) {
+        sort_first(keys, values, length_of(pairs));
+    }
+
+    template <skybark::grid_map_kernel K>
+    void map(const K& kernel, const skybark::bindings<device, K>& buffers,
+             const skybark::volume_bindings<device, K>& volumes, skybark::range elements) {
+        const grids all(volumes.read, volumes.write);
+        with_spans<K>(buffers, [&](auto... spans) {
+            for (std::uint32_t i = 0; i < elements.count; ++i) {
+                kernel.map(elements.first + i, all, spans...);
+            }
+        });
+    }
+    template <skybark::voxel_kernel K>
+    void map_voxels(const K& kernel, const skybark::bindings<device, K>& buffers,
+                    const skybark::volume_bindings<device, K>& volumes, glm::uvec3 extent) {
+        const grids all(volumes.read, volumes.write);
+        const glm::ivec3 size(extent);
+        with_spans<K>(buffers, [&](auto... spans) {
+            for (int z = 0; z < size.z; ++z) {
+                for (int y = 0; y < size.y; ++y) {
+                    for (int x = 0; x < size.x; ++x) {
+                        kernel.voxel({x, y, z}, all, spans...);
+                    }
+                }
+            }
+        });
+    }
+
+  private:
+    template <class K>
+    void draw_reading(const K& kernel, const skybark::bindings<device, K>& buffers,
+                      const images& read, const skybark::draw_geometry<device>& geometry,
+                      const skybark::draw_target<device>& target, skybark::draw_state state) {
         const skybark::image_description what =
             (target.color != nullptr ? target.color : target.depth)->description();
         const canvas to{target.color, target.depth, state, what.width, what.height};
@@ -403,7 +646,6 @@ class recorder {
         }
         const auto indices = records<std::uint32_t>(geometry.indices);
         with_spans<K>(buffers, [&](auto... spans) {
-            const images read(bound);
             using point = corner<K::varyings>;
             const auto shade = [&](const auto& varyings, glm::vec2 pixel, bool front) {
                 return kernel.fragment(varyings, pixel, front, read, spans...);
@@ -428,7 +670,74 @@ class recorder {
         });
     }
 
-  private:
+    template <class K, class... Spans>
+    static void add_slab(const K& kernel, std::uint32_t i, const skybark::voxel_slab& slab,
+                         const volume& to, Spans... spans) {
+        const glm::ivec3 size = to.size();
+        if (slab.slice < 0 || slab.slice >= size.z) {
+            return;
+        }
+        for (int x = std::max(slab.low.x, 0); x < std::min(slab.high.x, size.x); ++x) {
+            const float lateral = kernel.lateral(i, x, slab.slice, spans...);
+            for (int y = std::max(slab.low.y, 0); y < std::min(slab.high.y, size.y); ++y) {
+                const glm::ivec3 at{x, y, slab.slice};
+                to.store(at, to.load_int(at) + kernel.amount(i, lateral, y, spans...));
+            }
+        }
+    }
+
+    template <class Voxel>
+    static void scan_line(const volume& from, const volume& to, skybark::volume_scan how,
+                          Voxel&& voxel, int count) {
+        if (from.description().format == skybark::volume_format::int32) {
+            std::int64_t before = 0; // twice, so that a half is whole
+            for (int i = 0; i < count; ++i) {
+                const std::int64_t own = from.load_int(voxel(i));
+                const std::int64_t twice = before + own * halves_of(how.share);
+                if (to.description().format == skybark::volume_format::int32) {
+                    to.store(voxel(i), static_cast<std::int32_t>(twice / 2));
+                } else {
+                    to.store(voxel(i), static_cast<float>(twice) * (0.5f * how.scale));
+                }
+                before += 2 * own;
+            }
+            return;
+        }
+        float before = 0;
+        for (int i = 0; i < count; ++i) {
+            const float own = from.load(voxel(i));
+            const auto share = 0.5f * static_cast<float>(halves_of(how.share));
+            to.store(voxel(i), (before + own * share) * how.scale);
+            before += own;
+        }
+    }
+    [[nodiscard]] static int halves_of(skybark::scan_share share) {
+        switch (share) {
+        case skybark::scan_share::whole:
+            return 2;
+        case skybark::scan_share::half:
+            return 1;
+        case skybark::scan_share::none:
+            break;
+        }
+        return 0;
+    }
+
+    static void sort_first(const view& keys, const view& values, std::uint64_t count) {
+        const auto key = records<std::uint32_t>(keys);
+        const auto value = records<std::uint32_t>(values);
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+        for (std::uint64_t i = 0; i < count; ++i) {
+            pairs.emplace_back(key[i], value[i]);
+        }
+        std::stable_sort(pairs.begin(), pairs.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        for (std::uint64_t i = 0; i < count; ++i) {
+            key[i] = pairs[i].first;
+            value[i] = pairs[i].second;
+        }
+    }
+
     /// Triangles as far as there is room, and how many there would have been.
     template <class Vertex>
     struct list {
