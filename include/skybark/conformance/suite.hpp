@@ -16,16 +16,21 @@
 // (comma-separated): then, and with any other error, they fail. One device serves all cases until
 // one fails: the next case gets a new one.
 
+#include <skybark/conformance/accumulations.hpp>
 #include <skybark/conformance/bark.hpp>
 #include <skybark/conformance/branches.hpp>
 #include <skybark/conformance/buffers.hpp>
 #include <skybark/conformance/chains.hpp>
 #include <skybark/conformance/draws.hpp>
+#include <skybark/conformance/grids.hpp>
 #include <skybark/conformance/images.hpp>
 #include <skybark/conformance/leaves.hpp>
 #include <skybark/conformance/lists.hpp>
 #include <skybark/conformance/maps.hpp>
 #include <skybark/conformance/rings.hpp>
+#include <skybark/conformance/volume_scans.hpp>
+#include <skybark/conformance/volumes.hpp>
+#include <skybark/conformance/words.hpp>
 
 #include <gtest/gtest-spi.h>
 
@@ -97,6 +102,12 @@ template <backend B>
     add_branch_cases(all);
     add_bark_cases(all);
     add_leaf_cases(all);
+    add_volume_cases(all);
+    add_accumulation_cases(all);
+    add_volume_scan_cases(all);
+    add_word_scan_cases(all);
+    add_sort_cases(all);
+    add_grid_cases(all);
     return all;
 }
 
