@@ -6,6 +6,7 @@
 #include <skybark/core/backend.hpp>
 #include <skybark/vulkan/functions.hpp>
 
+#include <algorithm>
 #include <string>
 
 namespace skybark::vulkan {
@@ -20,7 +21,8 @@ enum class expansion {
 /// The caller's device. Nothing in it is owned, and all of it must outlive our device.
 ///
 /// The device must be Vulkan 1.3 with `synchronization2` and `dynamicRendering` enabled, and the
-/// queue must do graphics and compute.
+/// queue must do graphics and compute. Volumes of float16 need `shaderStorageImageExtendedFormats`
+/// as well; without it, asking for one is an error, and all else works.
 struct device_description {
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physical_device = VK_NULL_HANDLE;
@@ -34,6 +36,8 @@ struct device_description {
     bool synchronization2 = false;  ///< enabled by the caller, as we rely on it
     bool dynamic_rendering = false; ///< the same
     bool debug_utils = false;       ///< VK_EXT_debug_utils is enabled: objects get names
+    /// Enabled by the caller. Needed for volumes of float16 alone.
+    bool shader_storage_image_extended_formats = false;
 
     expansion expand_by = expansion::automatic;
     /// Goes through staging buffers even where the host could write to the device's memory.
@@ -146,6 +150,20 @@ class context {
         return description.expand_by == expansion::automatic
                    ? !on_cpu()
                    : description.expand_by == expansion::per_vertices;
+    }
+
+    /// Whether images of this format can be sampled with a linear filter.
+    [[nodiscard]] bool filters(VkFormat format) const {
+        VkFormatProperties can{};
+        call.get_format_properties(description.physical_device, format, &can);
+        return (can.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0;
+    }
+    [[nodiscard]] VkDeviceSize largest_heap() const noexcept {
+        VkDeviceSize largest = 0;
+        for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
+            largest = std::max(largest, memory.memoryHeaps[i].size);
+        }
+        return largest;
     }
 
     template <class Handle>

@@ -7,8 +7,8 @@
 //     auto recorder = device->record_into(commands);    // or the caller's: see finish()
 //
 // What touches the queue, and waits: create_buffer where the host cannot write the zeros itself,
-// create_image, upload, download and submit. Nothing else does. Calls on the queue need the lock
-// that Vulkan asks of everybody who shares it.
+// create_image, create_volume, upload, download and submit. Nothing else does. Calls on the queue
+// need the lock that Vulkan asks of everybody who shares it.
 //
 // In the caller's command buffer a recorder only appends: barriers, dispatches, copies and dynamic
 // rendering, outside any render pass. It begins with a barrier behind what the caller recorded and
@@ -93,6 +93,7 @@ class device {
     using backend_tag = skybark::backend_tag;
     using buffer = vulkan::buffer;
     using image = vulkan::image;
+    using volume = vulkan::volume;
     using recorder = vulkan::recorder;
 
     /// `unavailable` where a feature that we rely on was not enabled.
@@ -108,10 +109,12 @@ class device {
 
     [[nodiscard]] result<buffer> create_buffer(std::uint64_t bytes);
     [[nodiscard]] result<image> create_image(image_description what);
+    [[nodiscard]] result<volume> create_volume(volume_description what);
 
     /// The caller's objects, which stay the caller's.
     [[nodiscard]] buffer wrap(const foreign_buffer& foreign);
     [[nodiscard]] result<image> wrap(const foreign_image& foreign);
+    [[nodiscard]] result<volume> wrap(const foreign_volume& foreign);
 
     /// Names that debuggers and validation show, where VK_EXT_debug_utils is enabled.
     void set_name(const buffer& what, const char* name) {
@@ -122,6 +125,9 @@ class device {
     void set_name(const image& what, const char* name) {
         shared().name(VK_OBJECT_TYPE_IMAGE, what.handle(), name);
     }
+    void set_name(const volume& what, const char* name) {
+        shared().name(VK_OBJECT_TYPE_IMAGE, what.handle(), name);
+    }
 
     [[nodiscard]] result<void> upload(const buffer& to, std::uint64_t offset,
                                       std::span<const std::byte> bytes);
@@ -129,6 +135,8 @@ class device {
                                         std::span<std::byte> bytes);
     [[nodiscard]] result<void> upload(const image& to, std::span<const std::byte> bytes);
     [[nodiscard]] result<void> download(const image& from, std::span<std::byte> bytes);
+    [[nodiscard]] result<void> upload(const volume& to, std::span<const std::byte> bytes);
+    [[nodiscard]] result<void> download(const volume& from, std::span<std::byte> bytes);
 
     [[nodiscard]] result<vulkan::recorder> begin();
     [[nodiscard]] result<void> submit(vulkan::recorder& into);
@@ -169,6 +177,8 @@ namespace detail {
     limits.max_image_size =
         std::min({l.maxImageDimension2D, l.maxFramebufferWidth, l.maxFramebufferHeight,
                   l.maxViewportDimensions[0], l.maxViewportDimensions[1]});
+    limits.max_volume_size = l.maxImageDimension3D;
+    limits.filters_float32 = c.filters(VK_FORMAT_R32_SFLOAT);
     return limits;
 }
 

@@ -25,6 +25,7 @@ struct functions {
     PFN_vkGetPhysicalDeviceProperties2 get_properties = nullptr;
     PFN_vkGetPhysicalDeviceMemoryProperties get_memory_properties = nullptr;
     PFN_vkGetPhysicalDeviceFormatProperties get_format_properties = nullptr;
+    PFN_vkGetPhysicalDeviceImageFormatProperties get_image_format_properties = nullptr;
 
     PFN_vkAllocateMemory allocate_memory = nullptr;
     PFN_vkFreeMemory free_memory = nullptr;
@@ -79,6 +80,7 @@ struct functions {
     PFN_vkCmdFillBuffer fill_buffer = nullptr;
     PFN_vkCmdCopyBufferToImage copy_buffer_to_image = nullptr;
     PFN_vkCmdCopyImageToBuffer copy_image_to_buffer = nullptr;
+    PFN_vkCmdClearColorImage clear_color_image = nullptr;
     PFN_vkCmdBeginRendering begin_rendering = nullptr;
     PFN_vkCmdEndRendering end_rendering = nullptr;
     PFN_vkCmdSetViewport set_viewport = nullptr;
@@ -175,6 +177,7 @@ void load_command_functions(functions& f, Load& load) {
     load(f.fill_buffer, "vkCmdFillBuffer");
     load(f.copy_buffer_to_image, "vkCmdCopyBufferToImage");
     load(f.copy_image_to_buffer, "vkCmdCopyImageToBuffer");
+    load(f.clear_color_image, "vkCmdClearColorImage");
     load(f.begin_rendering, "vkCmdBeginRendering");
     load(f.end_rendering, "vkCmdEndRendering");
     load(f.set_viewport, "vkCmdSetViewport");
@@ -201,6 +204,7 @@ void load_command_functions(functions& f, Load& load) {
     from_instance(f.get_properties, "vkGetPhysicalDeviceProperties2");
     from_instance(f.get_memory_properties, "vkGetPhysicalDeviceMemoryProperties");
     from_instance(f.get_format_properties, "vkGetPhysicalDeviceFormatProperties");
+    from_instance(f.get_image_format_properties, "vkGetPhysicalDeviceImageFormatProperties");
     if (!from_instance.missing.empty()) {
         return fail(error_code::unavailable,
                     "This Vulkan instance has no " + from_instance.missing + ".");

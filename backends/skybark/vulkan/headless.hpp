@@ -86,6 +86,7 @@ class headless {
         [[nodiscard]] result<std::uint32_t> queue_family(VkPhysicalDevice of) const;
         [[nodiscard]] result<void> make_device(VkPhysicalDevice on, std::uint32_t family,
                                                bool gpu_assisted);
+        [[nodiscard]] VkPhysicalDeviceFeatures features(VkPhysicalDevice of) const;
         [[nodiscard]] bool has_layer(const char* name) const;
         [[nodiscard]] bool has_debug_utils(const char* layer) const;
     };
@@ -264,6 +265,12 @@ inline result<std::uint32_t> headless::loader::queue_family(VkPhysicalDevice of)
                 "This Vulkan device has no queue for both graphics and compute.");
 }
 
+inline VkPhysicalDeviceFeatures headless::loader::features(VkPhysicalDevice of) const {
+    VkPhysicalDeviceFeatures has{};
+    find<PFN_vkGetPhysicalDeviceFeatures>("vkGetPhysicalDeviceFeatures")(of, &has);
+    return has;
+}
+
 inline result<void> headless::loader::make_device(VkPhysicalDevice on, std::uint32_t family,
                                                   bool gpu_assisted) {
     auto has13 = make<VkPhysicalDeviceVulkan13Features>(
@@ -285,6 +292,8 @@ inline result<void> headless::loader::make_device(VkPhysicalDevice on, std::uint
     want13.synchronization2 = want13.dynamicRendering = VK_TRUE;
     auto want = make<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
     want.pNext = &want13;
+    want.features.shaderStorageImageExtendedFormats =
+        has.features.shaderStorageImageExtendedFormats;
     if (gpu_assisted) { // the layer's own instrumentation writes from every stage
         want.features.fragmentStoresAndAtomics = has.features.fragmentStoresAndAtomics;
         want.features.vertexPipelineStoresAndAtomics = has.features.vertexPipelineStoresAndAtomics;
@@ -341,6 +350,8 @@ inline result<headless> headless::create(headless_options options) {
     description.get_instance_proc_addr = made->get;
     description.synchronization2 = description.dynamic_rendering = true;
     description.debug_utils = options.validation;
+    description.shader_storage_image_extended_formats =
+        made->features(*physical).shaderStorageImageExtendedFormats != VK_FALSE;
     description.expand_by = options.expand_by;
     description.always_stage = options.always_stage;
     description.omit_barriers = options.omit_barriers;

@@ -93,10 +93,7 @@ class image {
         info.viewType = VK_IMAGE_VIEW_TYPE_2D;
         info.format = p.foreign.format;
         info.subresourceRange = {aspect_of(p.foreign.description.format), 0, 1, 0, 1};
-        VkFormatProperties can{};
-        c.call.get_format_properties(c.description.physical_device, info.format, &can);
-        p.filterable =
-            (can.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0;
+        p.filterable = c.filters(info.format);
         return c.check(c.call.create_image_view(c.device(), &info, c.callbacks(), &p.view),
                        "make a view of an image");
     }

@@ -1,13 +1,15 @@
 #pragma once
 // Layouts, samplers and pipelines of a device, made when first needed and kept.
 //
-// All compute programs share one layout, bindings 0–11; all draw programs with equally many images
-// share another: bindings 0–7 and, from 16 on, the images. Push constants are the 16 bytes of the
-// skeletons and then the kernel's own.
+// Compute programs have buffers at bindings 0–11, draw programs at 0–7. From 16 on come the images
+// of each kind (image_slot) that a program has; programs with equally many of each share a layout.
+// Push constants are the 16 bytes of the skeletons and then the kernel's own.
 
 #include <skybark/vulkan/image.hpp>
+#include <skybark/vulkan/volume.hpp>
 
 #include <array>
+#include <compare>
 #include <map>
 #include <memory>
 #include <span>
@@ -22,6 +24,19 @@ inline constexpr std::uint32_t offsets_binding = 9;
 inline constexpr std::uint32_t length_binding = 10;
 inline constexpr std::uint32_t ranges_binding = 11;
 inline constexpr std::uint32_t images_binding = 16;
+
+/// The kinds of images that a program is given: the binding of each is images_binding + kind.
+enum image_slot : std::uint32_t {
+    sampled_images,
+    sampled_volumes,
+    target_volumes, ///< written
+    sum_volumes,    ///< added to, or the source of a scan
+    image_slots,
+};
+[[nodiscard]] constexpr VkDescriptorType descriptor_of(std::uint32_t slot) noexcept {
+    return slot <= sampled_volumes ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
+                                   : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+}
 inline constexpr std::uint32_t push_bytes = 16 + max_kernel_bytes;
 
 inline constexpr VkShaderStageFlags draw_stages =
@@ -30,20 +45,32 @@ inline constexpr VkShaderStageFlags draw_stages =
 /// A program's SPIR-V. Its address tells programs apart.
 using spirv_words = std::span<const std::uint32_t>;
 
+/// What layouts differ by.
+struct layout_shape {
+    bool draws = false;
+    std::array<std::uint32_t, image_slots> images{}; ///< how many of each kind
+
+    [[nodiscard]] auto operator<=>(const layout_shape&) const noexcept = default;
+    [[nodiscard]] VkShaderStageFlags stages() const noexcept {
+        return draws ? draw_stages : VkShaderStageFlags{VK_SHADER_STAGE_COMPUTE_BIT};
+    }
+    [[nodiscard]] std::uint32_t buffers() const noexcept {
+        return draws ? static_cast<std::uint32_t>(max_kernel_buffers) : compute_bindings;
+    }
+};
+
 /// A descriptor set layout and the pipeline layout over it.
 struct program_layout {
     VkDescriptorSetLayout set = VK_NULL_HANDLE;
     VkPipelineLayout pipeline = VK_NULL_HANDLE;
-    VkShaderStageFlags stages = 0;
-    std::uint32_t buffers = 0;
-    std::uint32_t images = 0;
+    layout_shape shape;
 };
 
 /// What a graphics pipeline is made for.
 struct draw_program {
     spirv_words vertex;
     spirv_words fragment;
-    std::uint32_t images = 0;
+    layout_shape shape;
     VkFormat color = VK_FORMAT_UNDEFINED;
     VkFormat depth = VK_FORMAT_UNDEFINED;
     draw_state state;
@@ -64,7 +91,7 @@ class pipeline_cache {
         for (const auto& [key, pipeline] : draw_) {
             c.call.destroy_pipeline(c.device(), pipeline, c.callbacks());
         }
-        for (const auto& [images, layout] : layouts_) {
+        for (const auto& [shape, layout] : layouts_) {
             release(*layout);
         }
         for (const VkSampler sampler : samplers_) {
@@ -74,19 +101,26 @@ class pipeline_cache {
         }
     }
 
-    [[nodiscard]] result<const program_layout*> compute_layout() {
-        return layout(-1, VK_SHADER_STAGE_COMPUTE_BIT, compute_bindings, 0);
-    }
-    [[nodiscard]] result<const program_layout*> draw_layout(std::uint32_t images) {
-        return layout(static_cast<int>(images), draw_stages,
-                      static_cast<std::uint32_t>(max_kernel_buffers), images);
+    [[nodiscard]] result<const program_layout*> layout(const layout_shape& shape) {
+        std::unique_ptr<program_layout>& l = layouts_[shape];
+        if (!l) {
+            auto made = std::make_unique<program_layout>();
+            made->shape = shape;
+            if (auto done = fill_layout(*made); !done) {
+                release(*made);
+                return failure(done.error());
+            }
+            l = std::move(made);
+        }
+        return l.get();
     }
 
-    [[nodiscard]] result<VkPipeline> compute(spirv_words words, const char* name) {
+    [[nodiscard]] result<VkPipeline> compute(spirv_words words, const layout_shape& shape,
+                                             const char* name) {
         if (const auto found = compute_.find(words.data()); found != compute_.end()) {
             return found->second;
         }
-        auto made = make_compute(words);
+        auto made = make_compute(words, shape);
         if (made) {
             context_->name(VK_OBJECT_TYPE_PIPELINE, *made, name);
             compute_.emplace(words.data(), *made);
@@ -149,32 +183,20 @@ class pipeline_cache {
         }
     }
 
-    [[nodiscard]] result<const program_layout*>
-    layout(int key, VkShaderStageFlags stages, std::uint32_t buffers, std::uint32_t images) {
-        std::unique_ptr<program_layout>& l = layouts_[key];
-        if (!l) {
-            auto made = std::make_unique<program_layout>();
-            made->stages = stages;
-            made->buffers = buffers;
-            made->images = images;
-            if (auto done = fill_layout(*made); !done) {
-                release(*made);
-                return failure(done.error());
-            }
-            l = std::move(made);
-        }
-        return l.get();
-    }
-
     [[nodiscard]] result<void> fill_layout(program_layout& l) {
         context& c = *context_;
         std::vector<VkDescriptorSetLayoutBinding> slots;
-        for (std::uint32_t i = 0; i < l.buffers; ++i) {
-            slots.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, l.stages, nullptr});
+        const VkShaderStageFlags stages = l.shape.stages();
+        for (std::uint32_t i = 0; i < l.shape.buffers(); ++i) {
+            slots.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, stages, nullptr});
         }
-        if (l.images != 0) {
-            slots.push_back({images_binding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, l.images,
-                             VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
+        const VkShaderStageFlags readers =
+            l.shape.draws ? VkShaderStageFlags{VK_SHADER_STAGE_FRAGMENT_BIT} : stages;
+        for (std::uint32_t slot = 0; slot < image_slots; ++slot) {
+            if (l.shape.images[slot] != 0) {
+                slots.push_back({images_binding + slot, descriptor_of(slot), l.shape.images[slot],
+                                 readers, nullptr});
+            }
         }
         auto set = make<VkDescriptorSetLayoutCreateInfo>(
             VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
@@ -186,7 +208,7 @@ class pipeline_cache {
             !done) {
             return done;
         }
-        const VkPushConstantRange push{l.stages, 0, push_bytes};
+        const VkPushConstantRange push{stages, 0, push_bytes};
         auto info = make<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
         info.setLayoutCount = 1;
         info.pSetLayouts = &l.set;
@@ -229,9 +251,9 @@ class pipeline_cache {
         return info;
     }
 
-    [[nodiscard]] result<VkPipeline> make_compute(spirv_words words) {
+    [[nodiscard]] result<VkPipeline> make_compute(spirv_words words, const layout_shape& shape) {
         context& c = *context_;
-        auto l = compute_layout();
+        auto l = layout(shape);
         if (!l) {
             return failure(l.error());
         }
@@ -283,7 +305,7 @@ class pipeline_cache {
     [[nodiscard]] result<VkPipeline> make_draw(const draw_program& program, VkShaderModule vertex,
                                                VkShaderModule fragment) {
         context& c = *context_;
-        auto l = draw_layout(program.images);
+        auto l = layout(program.shape);
         if (!l) {
             return failure(l.error());
         }
@@ -362,7 +384,7 @@ class pipeline_cache {
     context* context_;
     std::map<const std::uint32_t*, VkPipeline> compute_;
     std::map<draw_key, VkPipeline> draw_;
-    std::map<int, std::unique_ptr<program_layout>> layouts_;
+    std::map<layout_shape, std::unique_ptr<program_layout>> layouts_;
     std::array<VkSampler, 4> samplers_{};
 };
 

@@ -1,19 +1,22 @@
 #pragma once
 // The recorder: appends patterns to a command buffer. See skybark/core/backend.hpp for what they
 // mean and device.hpp for whose command buffer it is.
-//
-// Between any two of its commands stands a barrier over all memory: patterns depend on each other
-// nearly always, and on one queue a finer barrier would gain little.
 
-#include <skybark/vulkan/device.hpp>
 #include <skybark/vulkan/program.hpp>
 #include <skybark/vulkan/programs/own_count.hpp>
-#include <skybark/vulkan/programs/own_dispatch_arguments.hpp>
 #include <skybark/vulkan/programs/own_draw_arguments.hpp>
 #include <skybark/vulkan/programs/own_scan.hpp>
 #include <skybark/vulkan/programs/own_scan_add.hpp>
+#include <skybark/vulkan/programs/own_scan_float32_float16.hpp>
+#include <skybark/vulkan/programs/own_scan_float32_float32.hpp>
+#include <skybark/vulkan/programs/own_scan_int32_float16.hpp>
+#include <skybark/vulkan/programs/own_scan_int32_float32.hpp>
+#include <skybark/vulkan/programs/own_scan_int32_int32.hpp>
+#include <skybark/vulkan/programs/own_sort_count.hpp>
+#include <skybark/vulkan/programs/own_sort_scatter.hpp>
+#include <skybark/vulkan/stream.hpp>
 
-#include <optional>
+#include <bit>
 
 namespace skybark::vulkan {
 
@@ -34,42 +37,20 @@ concept has_ring_program = requires {
     program<K>::rings_comp;
 };
 template <class K>
+concept has_slab_program = requires {
+    program<K>::accumulate_comp;
+};
+template <class K>
+concept has_voxel_program = requires {
+    program<K>::voxels_comp;
+};
+template <class K>
 concept has_draw_program = requires {
     program<K>::draw_vert;
     program<K>::draw_frag;
 };
 
 namespace detail {
-
-/// The skeletons' four words and the kernel's bytes.
-struct push_block {
-    std::array<std::byte, push_bytes> bytes{};
-    std::uint32_t size = 16;
-
-    void set_header(std::array<std::uint32_t, 4> header) {
-        std::memcpy(bytes.data(), header.data(), sizeof header);
-    }
-};
-
-template <kernel K>
-[[nodiscard]] push_block push_of(const K& kernel) {
-    push_block push;
-    if constexpr (!std::is_empty_v<K>) {
-        std::memcpy(push.bytes.data() + 16, &kernel, sizeof kernel);
-        push.size = 16 + (static_cast<std::uint32_t>(sizeof kernel) + 3) / 4 * 4;
-    }
-    return push;
-}
-
-using compute_slices = std::array<slice, compute_bindings>;
-
-/// A compute program and what it is given; recorded by `recorder::dispatch`.
-struct compute_call {
-    spirv_words words;
-    const char* name = "";
-    push_block push;
-    compute_slices buffers{}; ///< null: the program does not use it
-};
 
 /// An expansion into a list, its types forgotten.
 struct list_call {
@@ -85,6 +66,20 @@ struct list_call {
     std::uint32_t strips = 0;
     std::uint32_t strip_triangles = 0;
     std::uint32_t triangle_bytes = 0;
+};
+
+/// An accumulation, its types forgotten.
+struct slab_call {
+    compute_call pass;
+    range elements;
+    slice length; ///< a count_record that limits the elements, or null
+    std::uint32_t slabs = 0;
+};
+
+/// Where pairs to sort are, or go.
+struct pair_slices {
+    slice keys;
+    slice values;
 };
 
 /// How an expansion falls on invocations.
@@ -106,6 +101,7 @@ struct draw_call {
     draw_program program;
     push_block push;
     std::array<slice, max_kernel_buffers> buffers{};
+    bound_images images;
     slice indices;
     slice length;
     std::uint32_t first = 0;
@@ -113,37 +109,10 @@ struct draw_call {
     std::uint32_t base_vertex = 0;
 };
 
-inline constexpr std::uint32_t flag_counted = 1;
-inline constexpr std::uint32_t flag_degenerate = 2;
-inline constexpr std::uint32_t flag_neighbours = 4;
-
 } // namespace detail
 
-class recorder {
+class recorder : private detail::stream {
   public:
-    recorder(recorder&& other) noexcept
-        : state_(std::exchange(other.state_, nullptr)), recording_(std::move(other.recording_)),
-          error_(std::move(other.error_)), own_(other.own_), barriers_(other.barriers_),
-          before_(other.before_), after_(other.after_), images_(std::move(other.images_)),
-          image_infos_(std::move(other.image_infos_)) {}
-    recorder& operator=(recorder&& other) noexcept {
-        std::swap(state_, other.state_);
-        std::swap(recording_, other.recording_);
-        std::swap(error_, other.error_);
-        std::swap(own_, other.own_);
-        std::swap(barriers_, other.barriers_);
-        std::swap(before_, other.before_);
-        std::swap(after_, other.after_);
-        std::swap(images_, other.images_);
-        std::swap(image_infos_, other.image_infos_);
-        return *this;
-    }
-    ~recorder() {
-        if (state_) {
-            state_->give_back(std::move(recording_));
-        }
-    }
-
     /// The bytes are copied before the call returns.
     void upload(const buffer_view<device>& to, std::span<const std::byte> bytes) {
         const slice target = bound(to);
@@ -157,12 +126,12 @@ class recorder {
         }
         std::memcpy(staged->mapped, bytes.data(), bytes.size());
         state_->shared.traffic.up += bytes.size();
-        copy(staged->where, {target.buffer, target.offset, bytes.size()});
+        copy_slice(staged->where, {target.buffer, target.offset, bytes.size()});
     }
 
     /// As many bytes as the smaller of the two has.
     void copy(const buffer_view<device>& from, const buffer_view<device>& to) {
-        copy(bound(from), bound(to));
+        copy_slice(bound(from), bound(to));
     }
 
     template <map_kernel K>
@@ -211,298 +180,124 @@ class recorder {
     requires has_ring_program<K>
     void expand_rings(const K& kernel, const bindings<device, K>& buffers, range elements,
                       const buffer_view<device>& vertices) {
-        detail::compute_call call{program<K>::rings_comp, "skybark: rings", detail::push_of(kernel),
-                                  bound_all(buffers)};
+        detail::compute_call call{program<K>::rings_comp,
+                                  "skybark: rings",
+                                  detail::push_of(kernel),
+                                  bound_all(buffers),
+                                  {}};
         expand_rings(call, elements, kernel.ring_vertices(), sizeof(typename K::vertex),
                      bound(vertices));
     }
 
-    template <draw_kernel K>
-    requires has_draw_program<K>
-    void draw(const K& kernel, const bindings<device, K>& buffers,
-              const image_bindings<device, K>& images, const draw_geometry<device>& geometry,
-              const draw_target<device>& target, draw_state state) {
-        detail::draw_call call;
-        call.program.vertex = program<K>::draw_vert;
-        call.program.fragment = program<K>::draw_frag;
-        call.program.images = static_cast<std::uint32_t>(images.size());
-        call.program.state = state;
-        call.push = detail::push_of(kernel);
-        for (std::size_t i = 0; i < buffers.size(); ++i) {
-            call.buffers[i] = bound(buffers[i]);
-        }
-        call.indices = bound(geometry.indices);
-        call.length = bound(geometry.length);
-        call.first = geometry.first;
-        call.count = geometry.count;
-        call.base_vertex = geometry.base_vertex;
-        draw(call, images, target);
+    template <slab_kernel K>
+    requires has_slab_program<K>
+    void accumulate(const K& kernel, const bindings<device, K>& buffers, range elements,
+                    const accumulation<device>& out) {
+        accumulate_slabs({slab_pass(kernel, buffers), elements, {}, kernel.slabs()}, out);
     }
 
-    /// Beyond the contract: the running sum of 32-bit words, each word's own value left out, in
-    /// place; the sum of all goes to the first word of `total`. Sums stop at 2^32 − 1.
+    template <slab_kernel K>
+    requires has_slab_program<K>
+    void accumulate(const K& kernel, const bindings<device, K>& buffers,
+                    const counted<device>& elements, const accumulation<device>& out) {
+        accumulate_slabs({slab_pass(kernel, buffers),
+                          {0, elements.limit},
+                          bound(elements.count),
+                          kernel.slabs()},
+                         out);
+    }
+
+    template <grid_map_kernel K>
+    requires has_map_program<K>
+    void map(const K& kernel, const bindings<device, K>& buffers,
+             const volume_bindings<device, K>& volumes, range elements) {
+        detail::compute_call call = map_call(kernel, buffers);
+        add_volumes(call.images, volumes);
+        map_range(call, elements);
+    }
+
+    template <voxel_kernel K>
+    requires has_voxel_program<K>
+    void map_voxels(const K& kernel, const bindings<device, K>& buffers,
+                    const volume_bindings<device, K>& volumes, glm::uvec3 extent) {
+        detail::compute_call call{program<K>::voxels_comp,
+                                  "skybark: voxels",
+                                  detail::push_of(kernel),
+                                  bound_all(buffers),
+                                  {}};
+        add_volumes(call.images, volumes);
+        call.push.set_header({extent.x, extent.y, extent.z, 0});
+        dispatch(call, {groups_of(extent.x, 8), groups_of(extent.y, 8), extent.z});
+    }
+
+    template <draw_kernel K>
+    requires has_draw_program<K> &&
+        (!names_volumes<K>)void draw(const K& kernel, const bindings<device, K>& buffers,
+                                     const image_bindings<device, K>& images,
+                                     const draw_geometry<device>& geometry,
+                                     const draw_target<device>& target, draw_state state) {
+        detail::draw_call call = draw_call(kernel, buffers, images, geometry, state);
+        draw(call, target);
+    }
+
+    template <draw_kernel K>
+    requires has_draw_program<K> && names_volumes<K>
+    void draw(const K& kernel, const bindings<device, K>& buffers,
+              const image_bindings<device, K>& images, const volume_bindings<device, K>& volumes,
+              const draw_geometry<device>& geometry, const draw_target<device>& target,
+              draw_state state) {
+        detail::draw_call call = draw_call(kernel, buffers, images, geometry, state);
+        add_volumes(call.images, volumes);
+        draw(call, target);
+    }
+
     void scan(const buffer_view<device>& words, const buffer_view<device>& total) {
         const slice values = bound(words);
-        scan(values, static_cast<std::uint32_t>(values.size / 4), bound(total));
+        scan_words(values, static_cast<std::uint32_t>(values.size / 4), bound(total));
+    }
+
+    void scan(const volume& from, const volume& to, const volume_scan& how) {
+        scan_volume(from, to, how);
+    }
+
+    void sort(const buffer_view<device>& keys, const buffer_view<device>& values) {
+        sort_pairs(bound(keys), bound(values), {}, ~0u);
+    }
+    void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+              const counted<device>& pairs) {
+        sort_pairs(bound(keys), bound(values), bound(pairs.count), pairs.limit);
     }
 
   private:
     friend class device;
 
     recorder(detail::device_state& state, std::unique_ptr<detail::recording> r, bool own)
-        : state_(&state), recording_(std::move(r)), own_(own) {}
+        : detail::stream(state, std::move(r), own) {}
 
     /// Below this many elements an indirect dispatch isn't worth the one that prepares it.
     static constexpr std::uint32_t direct_limit = 16384;
     /// A range up to this size may share its workgroup with other ranges.
     static constexpr std::uint32_t small_range = 4096;
+    /// Invocations that share a slab, and slabs that an invocation walks: see accumulate.comp.
+    static constexpr std::uint32_t gpu_lanes = 16;
+    static constexpr std::uint32_t cpu_lanes = 8;
+    static constexpr std::uint32_t slabs_each = 1;
+    static constexpr std::uint64_t most_loop_turns = 65000;
     /// Turns of the loop in levels.comp; software rasterisers end a shader's loops after 65,535.
     static constexpr std::uint32_t most_turns = 16384;
-
-    // ---- Errors and barriers
-
-    [[nodiscard]] bool alive() {
-        if (error_ || !recording_) {
-            return false;
-        }
-        if (auto done = state_->shared.alive(); !done) {
-            stop(done.error());
-            return false;
-        }
-        return true;
-    }
-
-    void stop(error what) {
-        if (!error_) {
-            error_ = std::move(what);
-        }
-    }
-
-    [[nodiscard]] const functions& call() const noexcept { return state_->shared.call; }
-    [[nodiscard]] VkCommandBuffer commands() const noexcept { return recording_->commands(); }
-
-    void memory_barrier(const foreign_access& before, const foreign_access& after) {
-        auto memory = make<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
-        memory.srcStageMask = before.stage;
-        memory.srcAccessMask = before.access;
-        memory.dstStageMask = after.stage;
-        memory.dstAccessMask = after.access;
-        auto info = make<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
-        info.memoryBarrierCount = 1;
-        info.pMemoryBarriers = &memory;
-        call().barrier(commands(), &info);
-    }
-
-    /// What comes next sees all that came before.
-    void barrier() {
-        if (barriers_++ == 0 || !state_->shared.description.omit_barriers) {
-            memory_barrier(before_, foreign_access{});
-        }
-        before_ = {};
-    }
-
-    static void add(foreign_access& to, const foreign_access& more) {
-        to.stage |= more.stage;
-        to.access |= more.access;
-    }
-
-    // ---- Views and images as Vulkan takes them
-
-    [[nodiscard]] slice bound(const buffer_view<device>& view) {
-        if (!view.buffer || view.size == 0) {
-            return {};
-        }
-        assert(view.offset + view.size <= view.buffer->size_bytes());
-        if (view.buffer->is_foreign()) {
-            add(before_, view.buffer->foreign().before);
-            add(after_, view.buffer->foreign().after);
-        }
-        return {view.buffer->handle(), view.offset, view.size};
-    }
-
-    template <std::size_t N>
-    [[nodiscard]] detail::compute_slices
-    bound_all(const std::array<buffer_view<device>, N>& views) {
-        detail::compute_slices slices{};
-        for (std::size_t i = 0; i < N; ++i) {
-            slices[i] = bound(views[i]);
-        }
-        return slices;
-    }
-
-    void image_barrier(const image& on, VkImageLayout from, VkImageLayout to,
-                       const foreign_access& before, const foreign_access& after) {
-        auto one = make<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
-        one.srcStageMask = before.stage;
-        one.srcAccessMask = before.access;
-        one.dstStageMask = after.stage;
-        one.dstAccessMask = after.access;
-        one.oldLayout = from;
-        one.newLayout = to;
-        one.srcQueueFamilyIndex = one.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        one.image = on.handle();
-        one.subresourceRange = {aspect_of(on.description().format), 0, 1, 0, 1};
-        auto info = make<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
-        info.imageMemoryBarrierCount = 1;
-        info.pImageMemoryBarriers = &one;
-        call().barrier(commands(), &info);
-    }
-
-    /// A foreign image's first use in this recording brings it into the layout that we work in.
-    void use(const image* used) {
-        if (!used || !used->is_foreign() ||
-            std::find(images_.begin(), images_.end(), used) != images_.end()) {
-            return;
-        }
-        images_.push_back(used);
-        image_barrier(*used, used->foreign().layout_before, VK_IMAGE_LAYOUT_GENERAL,
-                      used->foreign().before, foreign_access{});
-    }
-
-    // ---- Copies
-
-    void copy(const slice& from, const slice& to) {
-        const VkBufferCopy region{from.offset, to.offset, std::min(from.size, to.size)};
-        if (region.size != 0 && alive()) {
-            barrier();
-            call().copy_buffer(commands(), from.buffer, to.buffer, 1, &region);
-        }
-    }
-
-    /// Rows [first, first + count) of an image and a buffer that holds just them.
-    [[nodiscard]] static VkBufferImageCopy rows(const image& of, const slice& in,
-                                                std::uint32_t first, std::uint32_t count) {
-        VkBufferImageCopy region{};
-        region.bufferOffset = in.offset;
-        region.imageSubresource = {aspect_of(of.description().format), 0, 0, 1};
-        region.imageOffset = {0, static_cast<std::int32_t>(first), 0};
-        region.imageExtent = {of.description().width, count, 1};
-        return region;
-    }
-
-    // ---- Compute
-
-    [[nodiscard]] const slice& or_unused(const slice& s) const {
-        return s.buffer != VK_NULL_HANDLE ? s : state_->shared.unused;
-    }
-
-    /// A set with these buffers at bindings 0, 1, …, and these images.
-    [[nodiscard]] result<VkDescriptorSet> fill_set(const program_layout& layout,
-                                                   std::span<const slice> buffers,
-                                                   std::span<const VkDescriptorImageInfo> images) {
-        auto set = recording_->take_set(layout);
-        if (!set) {
-            return set;
-        }
-        std::array<VkDescriptorBufferInfo, compute_bindings> infos{};
-        for (std::size_t i = 0; i < buffers.size(); ++i) {
-            const slice& s = or_unused(buffers[i]);
-            infos[i] = {s.buffer, s.offset, s.size};
-        }
-        std::array writes{make<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET),
-                          make<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET)};
-        writes[0].dstSet = *set; // goes on from binding to binding
-        writes[0].descriptorCount = static_cast<std::uint32_t>(buffers.size());
-        writes[0].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-        writes[0].pBufferInfo = infos.data();
-        writes[1].dstSet = *set;
-        writes[1].dstBinding = images_binding;
-        writes[1].descriptorCount = static_cast<std::uint32_t>(images.size());
-        writes[1].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-        writes[1].pImageInfo = images.data();
-        call().update_descriptor_sets(state_->shared.device(), images.empty() ? 1 : 2,
-                                      writes.data(), 0, nullptr);
-        return set;
-    }
-
-    void bind(VkPipelineBindPoint point, VkPipeline pipeline, const program_layout& layout,
-              VkDescriptorSet set, const detail::push_block& push) {
-        call().bind_pipeline(commands(), point, pipeline);
-        call().bind_descriptor_sets(commands(), point, layout.pipeline, 0, 1, &set, 0, nullptr);
-        call().push_constants(commands(), layout.pipeline, layout.stages, 0, push.size,
-                              push.bytes.data());
-    }
-
-    /// All but the dispatch itself.
-    [[nodiscard]] bool prepare(const detail::compute_call& what) {
-        if (!alive()) {
-            return false;
-        }
-        auto pipeline = state_->pipelines.compute(what.words, what.name);
-        if (!pipeline) {
-            stop(pipeline.error());
-            return false;
-        }
-        auto layout = state_->pipelines.compute_layout();
-        if (!layout) {
-            stop(layout.error());
-            return false;
-        }
-        auto set = fill_set(**layout, what.buffers, {});
-        if (!set) {
-            stop(set.error());
-            return false;
-        }
-        barrier();
-        bind(VK_PIPELINE_BIND_POINT_COMPUTE, *pipeline, **layout, *set, what.push);
-        return true;
-    }
-
-    /// More groups than one dimension takes go into the second; the spare ones find nothing to do.
-    void dispatch(const detail::compute_call& what, std::uint32_t groups) {
-        if (groups != 0 && prepare(what)) {
-            const std::uint32_t rows = (groups - 1) / 65535 + 1;
-            call().dispatch(commands(), (groups - 1) / rows + 1, rows, 1);
-        }
-    }
-
-    void dispatch_indirect(const detail::compute_call& what, const slice& arguments) {
-        if (prepare(what)) {
-            call().dispatch_indirect(commands(), arguments.buffer, arguments.offset);
-        }
-    }
-
-    /// A slice of scratch memory; stops the recorder where there is none.
-    [[nodiscard]] slice scratch(VkDeviceSize size) {
-        if (!alive()) {
-            return {};
-        }
-        auto piece = recording_->scratch.take(size);
-        if (!piece) {
-            stop(piece.error());
-            return {};
-        }
-        return piece->where;
-    }
-
-    /// Arguments for a dispatch over as many elements as `length` says.
-    [[nodiscard]] slice arguments_for(const slice& length, std::uint32_t limit, std::uint32_t side,
-                                      std::uint32_t groups) {
-        const slice arguments = scratch(sizeof(VkDispatchIndirectCommand));
-        detail::compute_call prepare_arguments{
-            dispatch_arguments_comp, "skybark: dispatch arguments", {}, {}};
-        prepare_arguments.push.set_header({0, limit, side, groups});
-        prepare_arguments.buffers[vertices_binding] = arguments;
-        prepare_arguments.buffers[length_binding] = length;
-        dispatch(prepare_arguments, 1);
-        return arguments;
-    }
 
     // ---- map
 
     template <class K>
     [[nodiscard]] detail::compute_call map_call(const K& kernel,
                                                 const bindings<device, K>& buffers) {
-        return {program<K>::map_comp, "skybark: map", detail::push_of(kernel), bound_all(buffers)};
+        return {
+            program<K>::map_comp, "skybark: map", detail::push_of(kernel), bound_all(buffers), {}};
     }
 
     void map_range(detail::compute_call what, range elements) {
         what.push.set_header({elements.first, elements.count, 0, 0});
         dispatch(what, groups_of(elements.count, 64));
-    }
-
-    [[nodiscard]] static std::uint32_t groups_of(std::uint32_t count, std::uint32_t size) {
-        return static_cast<std::uint32_t>((std::uint64_t{count} + size - 1) / size);
     }
 
     void map_counted(detail::compute_call what, const slice& length, std::uint32_t limit) {
@@ -559,22 +354,175 @@ class recorder {
 
     // ---- scan
 
-    void scan(const slice& values, std::uint32_t count, const slice& total) {
+    void scan_words(const slice& values, std::uint32_t count, const slice& total) {
         constexpr std::uint32_t block = 4096;
         const std::uint32_t blocks = std::max(1u, groups_of(count, block));
         const slice sums = blocks == 1 ? total : scratch(std::uint64_t{blocks} * 4);
-        detail::compute_call pass{scan_comp, "skybark: scan", {}, {}};
+        detail::compute_call pass{scan_comp, "skybark: scan", {}, {}, {}};
         pass.push.set_header({0, count, 0, 0});
         pass.buffers[vertices_binding] = values;
         pass.buffers[offsets_binding] = values;
         pass.buffers[length_binding] = sums;
         dispatch(pass, blocks);
         if (blocks > 1) {
-            scan(sums, blocks, total);
+            scan_words(sums, blocks, total);
             pass.words = scan_add_comp;
             pass.name = "skybark: scan, sums of blocks";
             dispatch(pass, groups_of(count, 256));
         }
+    }
+
+    // ---- volumes
+
+    template <class K>
+    void add_volumes(detail::bound_images& to, const volume_bindings<device, K>& volumes) {
+        for (const volume* one : volumes.read) {
+            add_volume(to, sampled_volumes, one);
+        }
+        for (const volume* one : volumes.write) {
+            add_volume(to, target_volumes, one);
+        }
+    }
+
+    /// From format to format: the program, or none where the contract has no such scan.
+    [[nodiscard]] static spirv_words scan_program(volume_format from, volume_format to) {
+        if (from == volume_format::int32) {
+            return to == volume_format::int32     ? spirv_words(scan_int32_int32_comp)
+                   : to == volume_format::float32 ? spirv_words(scan_int32_float32_comp)
+                                                  : spirv_words(scan_int32_float16_comp);
+        }
+        return to == volume_format::float32 ? spirv_words(scan_float32_float32_comp)
+                                            : spirv_words(scan_float32_float16_comp);
+    }
+
+    void scan_volume(const volume& from, const volume& to, const volume_scan& how) {
+        const volume_description size = from.description();
+        detail::compute_call pass{scan_program(size.format, to.description().format),
+                                  "skybark: scan of a volume",
+                                  {},
+                                  {},
+                                  {}};
+        add_volume(pass.images, sum_volumes, &from);
+        add_volume(pass.images, target_volumes, &to);
+        pass.push.set_header({static_cast<std::uint32_t>(how.axis),
+                              how.direction == scan_direction::descending ? 1u : 0u,
+                              static_cast<std::uint32_t>(how.share),
+                              std::bit_cast<std::uint32_t>(how.scale)});
+        const std::uint32_t across = how.axis == scan_axis::x ? size.height : size.width;
+        const std::uint32_t deep = how.axis == scan_axis::z ? size.height : size.depth;
+        dispatch(pass, {groups_of(across, 64), deep, 1});
+    }
+
+    void clear_volume(const volume& on) {
+        use(on);
+        if (alive()) {
+            const VkClearColorValue zero{};
+            const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+            barrier();
+            call().clear_color_image(commands(), on.handle(), VK_IMAGE_LAYOUT_GENERAL, &zero, 1,
+                                     &all);
+        }
+    }
+
+    template <class K>
+    [[nodiscard]] detail::compute_call slab_pass(const K& kernel,
+                                                 const bindings<device, K>& buffers) {
+        return {program<K>::accumulate_comp,
+                "skybark: accumulate",
+                detail::push_of(kernel),
+                bound_all(buffers),
+                {}};
+    }
+
+    /// How many invocations share a slab: see accumulate.comp.
+    [[nodiscard]] std::uint32_t lanes_for(const volume_description& size) const {
+        std::uint32_t lanes = state_->shared.per_vertices() ? gpu_lanes : cpu_lanes;
+        const auto turns = [&] {
+            return std::uint64_t{groups_of(size.width, lanes)} * (size.height + 1) * slabs_each;
+        };
+        while (state_->shared.on_cpu() && turns() > most_loop_turns) {
+            lanes *= 2;
+        }
+        return lanes;
+    }
+
+    void accumulate_slabs(detail::slab_call what, const accumulation<device>& out) {
+        assert(out.into && out.into->description().format == volume_format::int32);
+        if (out.clear) {
+            clear_volume(*out.into);
+        }
+        const std::uint32_t lanes = lanes_for(out.into->description());
+        const std::uint32_t works = groups_of(what.slabs, slabs_each) * lanes;
+        if (works == 0) {
+            return;
+        }
+        const bool counted = what.length.buffer != VK_NULL_HANDLE;
+        add_volume(what.pass.images, sum_volumes, out.into);
+        what.pass.buffers[length_binding] = what.length;
+        const std::uint32_t most = std::max(1u, (1u << 31) / works);
+        const std::uint32_t count = what.elements.count;
+        const bool indirect = counted && count > direct_limit && count <= most;
+        const slice arguments = indirect ? arguments_for(what.length, count, works, 1) : slice{};
+        for (std::uint32_t first = 0; first < count;) {
+            const std::uint32_t n = std::min(count - first, most);
+            what.pass.push.set_header({what.elements.first + first, n, lanes,
+                                       slabs_each << 16 | (counted ? detail::flag_counted : 0)});
+            if (indirect) {
+                dispatch_indirect(what.pass, arguments);
+            } else {
+                dispatch(what.pass, groups_of(n * works, 64));
+            }
+            first += n;
+        }
+    }
+
+    // ---- sort
+
+    /// See sort.glsl. An even number of passes, so that the pairs end where they were.
+    void sort_pairs(const slice& keys, const slice& values, const slice& length,
+                    std::uint32_t limit) {
+        constexpr std::uint32_t block = 1024;
+        constexpr std::uint32_t bits = 4;
+        const auto count = static_cast<std::uint32_t>(
+            std::min<std::uint64_t>({keys.size / 4, values.size / 4, limit}));
+        if (count == 0) {
+            return;
+        }
+        const std::uint32_t blocks = groups_of(count, block);
+        const slice counts = scratch(std::uint64_t{blocks} << (bits + 2));
+        const slice total = scratch(4);
+        detail::pair_slices from{keys, values};
+        detail::pair_slices to{scratch(std::uint64_t{count} * 4),
+                               scratch(std::uint64_t{count} * 4)};
+        const std::uint32_t flags = length.buffer != VK_NULL_HANDLE ? detail::flag_counted : 0;
+        detail::compute_call pass{sort_count_comp, "skybark: sort, counts", {}, {}, {}};
+        pass.buffers[length_binding] = length;
+        for (std::uint32_t shift = 0; shift < 32; shift += bits) {
+            pass.push.set_header({shift, count, blocks, flags});
+            count_digits(pass, from.keys, counts, blocks);
+            scan_words(counts, blocks << bits, total);
+            scatter(pass, from, to, counts, blocks);
+            std::swap(from, to);
+        }
+    }
+
+    void count_digits(detail::compute_call pass, const slice& keys, const slice& counts,
+                      std::uint32_t blocks) {
+        pass.buffers[vertices_binding] = counts;
+        pass.buffers[offsets_binding] = keys;
+        dispatch(pass, blocks);
+    }
+
+    void scatter(detail::compute_call pass, const detail::pair_slices& from,
+                 const detail::pair_slices& to, const slice& offsets, std::uint32_t blocks) {
+        pass.words = sort_scatter_comp;
+        pass.name = "skybark: sort, scatter";
+        pass.buffers[0] = to.keys;
+        pass.buffers[1] = to.values;
+        pass.buffers[2] = from.keys;
+        pass.buffers[3] = from.values;
+        pass.buffers[offsets_binding] = offsets;
+        dispatch(pass, blocks);
     }
 
     // ---- expand
@@ -646,7 +594,7 @@ class recorder {
             const slice offsets = scratch(std::max<std::uint64_t>(4, std::uint64_t{count} * 4));
             total = scratch(4);
             count_triangles(what, offsets);
-            scan(offsets, count, total);
+            scan_words(offsets, count, total);
             if (fit != 0) {
                 emit(what, count, each, offsets);
             }
@@ -656,7 +604,7 @@ class recorder {
 
     /// Each element's number of triangles.
     void count_triangles(const detail::list_call& what, const slice& counts) {
-        detail::compute_call pass{what.count, "skybark: strip counts", what.push, what.buffers};
+        detail::compute_call pass{what.count, "skybark: strip counts", what.push, what.buffers, {}};
         pass.push.set_header({what.elements.first, what.elements.count, 0, counted_flag(what)});
         pass.buffers[offsets_binding] = counts;
         pass.buffers[length_binding] = what.length;
@@ -672,7 +620,7 @@ class recorder {
               const slice& offsets) {
         const bool degenerate = what.policy == padding::degenerate;
         const detail::work_plan p = plan(what.strips, what.strip_triangles, 512, 2);
-        detail::compute_call pass{what.emit, "skybark: strips", what.push, what.buffers};
+        detail::compute_call pass{what.emit, "skybark: strips", what.push, what.buffers, {}};
         pass.buffers[length_binding] = what.length;
         const std::uint32_t flags =
             p.flags | counted_flag(what) | (degenerate ? detail::flag_degenerate : 0);
@@ -704,7 +652,7 @@ class recorder {
     void write_record(const detail::list_call& what, std::uint64_t fit, const slice& total) {
         const std::uint32_t degenerate =
             total.buffer == VK_NULL_HANDLE ? detail::flag_degenerate : 0;
-        detail::compute_call pass{count_comp, "skybark: count", {}, {}};
+        detail::compute_call pass{count_comp, "skybark: count", {}, {}, {}};
         pass.push.set_header({static_cast<std::uint32_t>(std::min<std::uint64_t>(fit, ~0u)),
                               what.elements.count, what.strips * what.strip_triangles,
                               degenerate | counted_flag(what)});
@@ -716,30 +664,48 @@ class recorder {
 
     // ---- draw
 
-    void draw(detail::draw_call& what, std::span<const sampled_image<device>> images,
-              const draw_target<device>& target) {
+    template <class K>
+    [[nodiscard]] detail::draw_call draw_call(const K& kernel, const bindings<device, K>& buffers,
+                                              const image_bindings<device, K>& images,
+                                              const draw_geometry<device>& geometry,
+                                              draw_state state) {
+        detail::draw_call call;
+        call.program.vertex = program<K>::draw_vert;
+        call.program.fragment = program<K>::draw_frag;
+        call.program.state = state;
+        call.push = detail::push_of(kernel);
+        for (std::size_t i = 0; i < buffers.size(); ++i) {
+            call.buffers[i] = bound(buffers[i]);
+        }
+        call.images.shape.draws = true;
+        for (const sampled_image<device>& one : images) {
+            add_image(call.images, one);
+        }
+        call.indices = bound(geometry.indices);
+        call.length = bound(geometry.length);
+        call.first = geometry.first;
+        call.count = geometry.count;
+        call.base_vertex = geometry.base_vertex;
+        return call;
+    }
+
+    void draw(detail::draw_call& what, const draw_target<device>& target) {
         assert(target.color || target.depth);
         if (!alive()) {
             return;
         }
+        what.program.shape = what.images.shape;
         what.program.color = target.color ? target.color->format() : VK_FORMAT_UNDEFINED;
         what.program.depth = target.depth ? target.depth->format() : VK_FORMAT_UNDEFINED;
-        image_infos_.clear();
-        for (const sampled_image<device>& one : images) {
-            add_image(one);
-        }
-        if (!alive()) {
-            return;
-        }
         auto pipeline = state_->pipelines.draw(what.program, "skybark: draw");
         if (!pipeline) {
             return stop(pipeline.error());
         }
-        auto layout = state_->pipelines.draw_layout(what.program.images);
+        auto layout = state_->pipelines.layout(what.program.shape);
         if (!layout) {
             return stop(layout.error());
         }
-        auto set = fill_set(**layout, what.buffers, image_infos_);
+        auto set = fill_set(**layout, what.buffers, what.images);
         if (!set) {
             return stop(set.error());
         }
@@ -747,26 +713,16 @@ class recorder {
         if (!alive()) {
             return;
         }
-        barrier();
-        for (const sampled_image<device>& one : images) {
-            use(one.image);
+        for (const image* on : {target.color, target.depth}) {
+            if (on) {
+                use(*on);
+            }
         }
-        use(target.color);
-        use(target.depth);
+        barrier();
         begin_rendering(target);
         bind(VK_PIPELINE_BIND_POINT_GRAPHICS, *pipeline, **layout, *set, what.push);
         issue(what, arguments);
         call().end_rendering(commands());
-    }
-
-    void add_image(const sampled_image<device>& one) {
-        assert(one.image);
-        auto sampler = state_->pipelines.sampler(
-            one.image->filterable() ? one.filter : filter_mode::nearest, one.wrap);
-        if (!sampler) {
-            return stop(sampler.error());
-        }
-        image_infos_.push_back({*sampler, one.image->view(), VK_IMAGE_LAYOUT_GENERAL});
     }
 
     /// Indirect arguments, where the number of triangles is on the device.
@@ -778,7 +734,7 @@ class recorder {
         const std::uint64_t indices = what.indices.size / 4;
         const std::uint64_t most = !indexed ? ~0u : indices > what.first ? indices - what.first : 0;
         const slice arguments = scratch(sizeof(VkDrawIndexedIndirectCommand));
-        detail::compute_call pass{draw_arguments_comp, "skybark: draw arguments", {}, {}};
+        detail::compute_call pass{draw_arguments_comp, "skybark: draw arguments", {}, {}, {}};
         pass.push.set_header({what.first + first_index(what), what.base_vertex,
                               static_cast<std::uint32_t>(std::min<std::uint64_t>(most, ~0u)),
                               indexed ? 1u : 0u});
@@ -847,38 +803,6 @@ class recorder {
             call().draw(commands(), what.count, 1, what.first + what.base_vertex, 0);
         }
     }
-
-    // ---- The end
-
-    /// Results become visible to the host and to whatever the queue does next.
-    void close() {
-        if (!alive()) {
-            return;
-        }
-        foreign_access after = after_;
-        add(after, {VK_PIPELINE_STAGE_2_HOST_BIT, 0});
-        memory_barrier(before_, after);
-        for (const image* used : images_) {
-            image_barrier(*used, VK_IMAGE_LAYOUT_GENERAL, used->foreign().layout_after,
-                          foreign_access{}, used->foreign().after);
-        }
-    }
-
-    /// Gives the recording away, and the first error or nothing.
-    [[nodiscard]] std::unique_ptr<detail::recording> take_recording() {
-        images_.clear();
-        return std::move(recording_);
-    }
-
-    detail::device_state* state_ = nullptr;
-    std::unique_ptr<detail::recording> recording_;
-    std::optional<error> error_;
-    bool own_ = true; ///< the command buffer is ours
-    std::uint64_t barriers_ = 0;
-    foreign_access before_;            ///< what the next barrier waits for
-    foreign_access after_;             ///< what the last barrier holds back
-    std::vector<const image*> images_; ///< foreign ones that were brought into our layout
-    std::vector<VkDescriptorImageInfo> image_infos_;
 };
 
 } // namespace skybark::vulkan

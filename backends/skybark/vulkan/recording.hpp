@@ -105,13 +105,17 @@ class descriptor_sets {
 
     [[nodiscard]] result<void> grow() {
         context& c = *context_;
-        const std::array sizes{
-            VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, pool_sets * layout_->buffers},
-            VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                 pool_sets * layout_->images}};
+        const layout_shape& shape = layout_->shape;
+        std::vector<VkDescriptorPoolSize> sizes{
+            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, pool_sets * shape.buffers()}};
+        for (std::uint32_t slot = 0; slot < image_slots; ++slot) {
+            if (shape.images[slot] != 0) {
+                sizes.push_back({descriptor_of(slot), pool_sets * shape.images[slot]});
+            }
+        }
         auto info = make<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
         info.maxSets = pool_sets;
-        info.poolSizeCount = layout_->images != 0 ? 2 : 1;
+        info.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
         info.pPoolSizes = sizes.data();
         VkDescriptorPool pool = VK_NULL_HANDLE;
         if (auto done =

@@ -23,6 +23,18 @@ inline result<image> device::wrap(const foreign_image& foreign) {
     return image(shared(), parts);
 }
 
+inline result<volume> device::wrap(const foreign_volume& foreign) {
+    if (auto alive = shared().alive(); !alive) {
+        return failure(alive.error());
+    }
+    volume::parts parts;
+    parts.foreign = foreign;
+    if (auto done = volume::add_view(shared(), parts); !done) {
+        return failure(done.error());
+    }
+    return volume(shared(), parts);
+}
+
 inline result<recorder> device::begin() {
     if (auto alive = shared().alive(); !alive) {
         return failure(alive.error());
@@ -167,8 +179,32 @@ inline result<image> device::create_image(image_description what) {
     image made(c, parts); // gives back what there is
     if (done) {
         done = at_once([&](vulkan::recorder& r) {
-            r.image_barrier(made, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL,
-                            foreign_access{}, foreign_access{});
+            r.image_barrier(made.handle(), aspect_of(what.format), VK_IMAGE_LAYOUT_UNDEFINED,
+                            VK_IMAGE_LAYOUT_GENERAL, foreign_access{}, foreign_access{});
+        });
+    }
+    if (!done) {
+        return failure(done.error());
+    }
+    return made;
+}
+
+inline result<volume> device::create_volume(volume_description what) {
+    context& c = shared();
+    if (auto alive = c.alive(); !alive) {
+        return failure(alive.error());
+    }
+    volume::parts parts;
+    parts.foreign.description = what;
+    auto done = volume::add_image(c, parts);
+    if (done) {
+        done = volume::add_view(c, parts);
+    }
+    volume made(c, parts); // gives back what there is
+    if (done) {
+        done = at_once([&](vulkan::recorder& r) {
+            r.image_barrier(made.handle(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+                            VK_IMAGE_LAYOUT_GENERAL, foreign_access{}, foreign_access{});
         });
     }
     if (!done) {
@@ -238,7 +274,7 @@ inline result<void> device::download(const buffer& from, std::uint64_t offset,
         if (!staged) {
             return failure(staged.error());
         }
-        into->copy(into->bound({&from, offset + at, piece.size()}), staged->where);
+        into->copy_slice(into->bound({&from, offset + at, piece.size()}), staged->where);
         if (auto done = execute(*into); !done) {
             return done;
         }
@@ -266,7 +302,7 @@ inline result<void> device::upload(const image& to, std::span<const std::byte> b
         std::memcpy(staged->mapped, bytes.data() + y * row, n * row);
         shared().traffic.up += n * row;
         into->barrier();
-        into->use(&to);
+        into->use(to);
         const VkBufferImageCopy region = vulkan::recorder::rows(to, staged->where, y, n);
         shared().call.copy_buffer_to_image(into->commands(), staged->where.buffer, to.handle(),
                                            VK_IMAGE_LAYOUT_GENERAL, 1, &region);
@@ -293,7 +329,7 @@ inline result<void> device::download(const image& from, std::span<std::byte> byt
             return failure(staged.error());
         }
         into->barrier();
-        into->use(&from);
+        into->use(from);
         const VkBufferImageCopy region = vulkan::recorder::rows(from, staged->where, y, n);
         shared().call.copy_image_to_buffer(into->commands(), from.handle(), VK_IMAGE_LAYOUT_GENERAL,
                                            staged->where.buffer, 1, &region);
@@ -304,6 +340,106 @@ inline result<void> device::download(const image& from, std::span<std::byte> byt
         shared().traffic.down += n * row;
     }
     return {};
+}
+
+namespace detail {
+
+/// A box of a volume that goes through staging memory at once: whole layers, or some rows of one.
+struct volume_piece {
+    std::uint32_t y = 0, z = 0, rows = 0, layers = 0;
+};
+
+/// Calls `go(piece, offset, bytes)` for one piece after another until one fails. A foreign volume
+/// goes in one: it may change its layout with each recording.
+template <class Go>
+[[nodiscard]] result<void> for_pieces(const volume& of, Go&& go) {
+    const volume_description what = of.description();
+    const std::uint64_t row = std::uint64_t{what.width} * bytes_per_voxel(what.format);
+    const std::uint64_t layer = row * what.height;
+    const auto fit = [&](std::uint64_t each, std::uint32_t most) {
+        const std::uint64_t n = of.is_foreign() ? most : staging_piece / each;
+        return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(n, 1, most));
+    };
+    const std::uint32_t layers = fit(layer, what.depth);
+    const std::uint32_t rows = layers > 1 ? what.height : fit(row, what.height);
+    for (std::uint32_t z = 0; z < what.depth; z += layers) {
+        for (std::uint32_t y = 0; y < what.height; y += rows) {
+            const volume_piece piece{y, z, std::min(rows, what.height - y),
+                                     std::min(layers, what.depth - z)};
+            if (auto done = go(piece, z * layer + y * row, row * piece.rows * piece.layers);
+                !done) {
+                return done;
+            }
+        }
+    }
+    return {};
+}
+
+[[nodiscard]] inline VkBufferImageCopy region_of(const volume& of, const volume_piece& piece,
+                                                 const slice& in) {
+    VkBufferImageCopy region{};
+    region.bufferOffset = in.offset;
+    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.imageOffset = {0, static_cast<std::int32_t>(piece.y),
+                          static_cast<std::int32_t>(piece.z)};
+    region.imageExtent = {of.description().width, piece.rows, piece.layers};
+    return region;
+}
+
+} // namespace detail
+
+inline result<void> device::upload(const volume& to, std::span<const std::byte> bytes) {
+    assert(bytes.size() == to.description().size_bytes());
+    return detail::for_pieces(
+        to,
+        [&](const detail::volume_piece& piece, std::uint64_t at,
+            std::uint64_t size) -> result<void> {
+            auto into = begin();
+            if (!into) {
+                return failure(into.error());
+            }
+            auto staged = into->recording_->staging.take(size);
+            if (!staged) {
+                return failure(staged.error());
+            }
+            std::memcpy(staged->mapped, bytes.data() + at, size);
+            shared().traffic.up += size;
+            into->barrier();
+            into->use(to);
+            const VkBufferImageCopy region = detail::region_of(to, piece, staged->where);
+            shared().call.copy_buffer_to_image(into->commands(), staged->where.buffer, to.handle(),
+                                               VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+            return submit(*into);
+        });
+}
+
+inline result<void> device::download(const volume& from, std::span<std::byte> bytes) {
+    assert(bytes.size() == from.description().size_bytes());
+    return detail::for_pieces(from,
+                              [&](const detail::volume_piece& piece, std::uint64_t at,
+                                  std::uint64_t size) -> result<void> {
+                                  auto into = begin();
+                                  if (!into) {
+                                      return failure(into.error());
+                                  }
+                                  auto staged = into->recording_->readback.take(size);
+                                  if (!staged) {
+                                      return failure(staged.error());
+                                  }
+                                  into->barrier();
+                                  into->use(from);
+                                  const VkBufferImageCopy region =
+                                      detail::region_of(from, piece, staged->where);
+                                  shared().call.copy_image_to_buffer(
+                                      into->commands(), from.handle(), VK_IMAGE_LAYOUT_GENERAL,
+                                      staged->where.buffer, 1, &region);
+                                  if (auto done = execute(*into); !done) {
+                                      return done;
+                                  }
+                                  std::memcpy(bytes.data() + at, staged->mapped, size);
+                                  shared().traffic.down += size;
+                                  return {};
+                              });
 }
 
 } // namespace skybark::vulkan
