@@ -4,8 +4,10 @@
 
 #include <skybark/kernels/probe_level.hpp>
 #include <skybark/kernels/probe_rings.hpp>
+#include <skybark/kernels/probe_slabs.hpp>
 #include <skybark/kernels/probe_strips.hpp>
 #include <skybark/kernels/probe_surface.hpp>
+#include <skybark/kernels/probe_voxels.hpp>
 
 #include <gtest/gtest.h>
 
@@ -77,6 +79,48 @@ TEST(null_backend, expansions_count_what_they_might_make) {
     EXPECT_EQ(record[0].written, 10u);
     EXPECT_EQ(device.counts().expanded_elements, 4u);
     EXPECT_EQ(device.counts().submits, 1u);
+}
+
+TEST(null_backend, volumes_take_memory_and_calls_are_counted) {
+    null_device device(null_options{{1000, 16, 10, 64, 4, 32}, 5000, false});
+    EXPECT_EQ(device.create_volume({33, 1, 1, volume_format::int32}).error().code,
+              error_code::out_of_memory);
+    EXPECT_EQ(device.create_volume({32, 32, 32, volume_format::int32}).error().code,
+              error_code::out_of_memory);
+    {
+        // Larger than the largest buffer.
+        const auto a = device.create_volume({8, 8, 8, volume_format::float32});
+        const auto b = device.create_volume({8, 8, 8, volume_format::float16});
+        ASSERT_TRUE(a && b);
+        const auto boxes = device.create_buffer(320);
+        const auto words = device.create_buffer(400);
+        using views = buffer_view<null_device>;
+        ASSERT_TRUE(run(device, [&](auto& r) {
+            r.accumulate(kernels::probe_slabs{6, 0, 0, 1}, {view<null_device>(*boxes)}, range{2, 7},
+                         accumulation<null_device>{&*a, true, {}, {}});
+            r.scan(*a, *b, volume_scan{});
+            r.scan(views{&*words, 0, 80}, views{&*words, 80, 16});
+            r.sort(views{&*words, 0, 80}, views{&*words, 80, 80});
+            r.map_voxels(kernels::probe_voxels{},
+                         {view<null_device>(*boxes), view<null_device>(*words)},
+                         {{&*a, &*a}, {&*b, &*b}}, glm::uvec3(2, 3, 4));
+        }));
+        EXPECT_EQ(device.counts().bytes_alive, 2048u + 1024u + 720u);
+        EXPECT_EQ(device.counts().volumes_alive, 2u);
+    }
+    const auto counts = device.counts();
+    EXPECT_EQ(counts.volumes_made, 2u);
+    EXPECT_EQ(counts.volumes_alive, 0u);
+    EXPECT_EQ(counts.bytes_alive, 0u);
+    EXPECT_EQ(counts.accumulates, 1u);
+    EXPECT_EQ(counts.accumulated_elements, 7u);
+    EXPECT_EQ(counts.slabs, 42u);
+    EXPECT_EQ(counts.volume_scans, 1u);
+    EXPECT_EQ(counts.voxels_scanned, 512u);
+    EXPECT_EQ(counts.words_scanned, 20u);
+    EXPECT_EQ(counts.sorted_pairs, 20u);
+    EXPECT_EQ(counts.mapped_voxels, 24u);
+    EXPECT_EQ(counts.largest_view, 400u);
 }
 
 TEST(null_backend, can_be_lost) {

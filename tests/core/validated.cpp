@@ -8,7 +8,11 @@
 #include <skybark/kernels/probe_level.hpp>
 #include <skybark/kernels/probe_map.hpp>
 #include <skybark/kernels/probe_rings.hpp>
+#include <skybark/kernels/probe_slabs.hpp>
 #include <skybark/kernels/probe_strips.hpp>
+#include <skybark/kernels/probe_volume.hpp>
+#include <skybark/kernels/probe_volume_draw.hpp>
+#include <skybark/kernels/probe_voxels.hpp>
 
 #include <gtest/gtest.h>
 
@@ -23,10 +27,20 @@ static_assert(maps<checked, kernels::probe_map>);
 static_assert(expands<checked, kernels::probe_strips>);
 static_assert(expands_rings<checked, kernels::probe_rings>);
 static_assert(draws<checked, kernels::probe_image>);
+static_assert(volume_backend<checked> && scans<checked> && sorts<checked>);
+static_assert(accumulates<checked, kernels::probe_slabs>);
+static_assert(maps_grids<checked, kernels::probe_volume>);
+static_assert(maps_voxels<checked, kernels::probe_voxels>);
+static_assert(draws_volumes<checked, kernels::probe_volume_draw>);
+// What the wrapped device does not have is not there.
+static_assert(!fuses_accumulate_scan<null_device, kernels::probe_slabs>);
+static_assert(!fuses_accumulate_scan<checked, kernels::probe_slabs>);
+static_assert(!draws_volumes<checked, kernels::probe_image>);
+static_assert(!draws<checked, kernels::probe_volume_draw>);
 
 class validation : public testing::Test {
   protected:
-    null_device inner{conformance::null_options{{1 << 20, 16, 1000, 512}, 1 << 24, true}};
+    null_device inner{conformance::null_options{{1 << 20, 16, 1000, 512, 4, 64}, 1 << 24, true}};
     std::vector<std::string> said;
     checked device{inner, [this](std::string_view sentence) { said.emplace_back(sentence); }};
 
@@ -36,6 +50,9 @@ class validation : public testing::Test {
     [[nodiscard]] checked::image image(std::uint32_t width, std::uint32_t height,
                                        image_format format = image_format::rgba8) {
         return std::move(*device.create_image({width, height, format}));
+    }
+    [[nodiscard]] checked::volume volume(volume_format format, std::uint32_t width = 4) {
+        return std::move(*device.create_volume({width, 3, 2, format}));
     }
     /// One sentence has been said since the last time, and it has all of these in it.
     void expect_said(std::initializer_list<const char*> parts) {
@@ -268,6 +285,193 @@ TEST_F(validation, draws) {
     EXPECT_EQ(inner.counts().draws, 0u);
     three.first = 0;
     draw(to, three, &texture);
+    EXPECT_TRUE(said.empty());
+    EXPECT_EQ(inner.counts().draws, 1u);
+}
+
+TEST_F(validation, volume_bytes) {
+    EXPECT_FALSE(device.create_volume({2, 0, 2, volume_format::int32}));
+    expect_said({"create_volume", "2 x 0 x 2"});
+    auto v = volume(volume_format::float16);
+    EXPECT_FALSE(device.upload(v, std::vector<std::byte>(96)));
+    expect_said({"upload", "4 x 3 x 2", "float16", "48", "96"});
+    std::vector<std::byte> out(47);
+    EXPECT_FALSE(device.download(v, out));
+    expect_said({"download", "48", "47"});
+    const auto moved = std::move(v);
+    EXPECT_FALSE(device.upload(v, std::vector<std::byte>(48))); // NOLINT
+    expect_said({"moved from"});
+    checked other(inner, [](std::string_view) {});
+    EXPECT_FALSE(other.upload(moved, std::vector<std::byte>(48)));
+    EXPECT_NE(other.last_misuse().find("another device"), std::string::npos);
+    EXPECT_EQ(inner.counts().uploads + inner.counts().downloads, 0u);
+    EXPECT_TRUE(device.upload(moved, std::vector<std::byte>(48)));
+    EXPECT_EQ(inner.counts().volumes_alive, 1u);
+}
+
+TEST_F(validation, volume_scans) {
+    const auto whole = volume(volume_format::int32);
+    const auto sums = volume(volume_format::int32);
+    const auto floats = volume(volume_format::float32);
+    const auto halves = volume(volume_format::float16);
+    const auto wide = volume(volume_format::float32, 5);
+    checked other(inner, [](std::string_view) {});
+    const auto foreign = std::move(*other.create_volume({4, 3, 2, volume_format::float32}));
+    auto r = device.begin();
+    r->scan(whole, whole, volume_scan{});
+    expect_said({"scan", "the source is also the destination"});
+    r->scan(whole, wide, volume_scan{});
+    expect_said({"4 x 3 x 2", "5 x 3 x 2"});
+    r->scan(halves, floats, volume_scan{});
+    expect_said({"the source", "float16"});
+    r->scan(floats, sums, volume_scan{});
+    expect_said({"float32", "int32"});
+    volume_scan how;
+    how.scale = 0.5f;
+    r->scan(whole, sums, how);
+    expect_said({"whole numbers", "0.5"});
+    how = {};
+    how.share = scan_share::half;
+    r->scan(whole, sums, how);
+    expect_said({"whole numbers", "halves"});
+    r->scan(whole, foreign, volume_scan{});
+    expect_said({"the destination", "another device"});
+    EXPECT_EQ(inner.counts().volume_scans, 0u);
+    r->scan(whole, sums, volume_scan{});
+    r->scan(whole, floats, how);
+    r->scan(floats, halves, how);
+    EXPECT_TRUE(said.empty());
+    EXPECT_EQ(inner.counts().volume_scans, 3u);
+}
+
+TEST_F(validation, volume_gone_before_submit) {
+    const auto whole = volume(volume_format::int32);
+    auto r = device.begin();
+    {
+        const auto floats = volume(volume_format::float32);
+        r->scan(whole, floats, volume_scan{});
+    }
+    EXPECT_FALSE(device.submit(*r));
+    expect_said({"volume", "gone", "outlive"});
+}
+
+TEST_F(validation, accumulations) {
+    const auto b = buffer(1024);
+    const auto whole = volume(volume_format::int32);
+    const auto floats = volume(volume_format::float32);
+    auto r = device.begin();
+    const auto add = [&](std::uint32_t slabs, range elements, const checked::volume* into) {
+        r->accumulate(kernels::probe_slabs{slabs, 0, 0, 1}, {view<checked>(b)}, elements,
+                      accumulation<checked>{into, true, {}, {}});
+    };
+    add(4, {0, 5}, nullptr);
+    expect_said({"accumulate", "the volume to add to", "not given"});
+    add(4, {0, 5}, &floats);
+    expect_said({"float32"});
+    add(0xffffffff, {0, 5}, &whole);
+    expect_said({"4294967295 slabs", "cannot be meant"});
+    add(4, {0, 1001}, &whole);
+    expect_said({"1001 elements"});
+    r->accumulate(kernels::probe_slabs{}, {view<checked>(b)}, counted<checked>{{&b, 0, 8}, 5},
+                  accumulation<checked>{&whole, true, {}, {}});
+    expect_said({"accumulate over a count", "8 bytes", "count_record"});
+    EXPECT_EQ(inner.counts().accumulates, 0u);
+    add(4, {0, 5}, &whole);
+    r->accumulate(kernels::probe_slabs{}, {view<checked>(b)}, counted<checked>{{&b, 0, 16}, 5},
+                  accumulation<checked>{&whole, true, {}, {}});
+    EXPECT_TRUE(said.empty());
+    EXPECT_EQ(inner.counts().accumulates, 2u);
+    EXPECT_EQ(inner.counts().slabs, 40u);
+}
+
+TEST_F(validation, scans_and_sorts_of_words) {
+    const auto b = buffer(1024);
+    const auto c = buffer(8192);
+    auto r = device.begin();
+    const buffer_view<checked> keys{&b, 0, 256};
+    const buffer_view<checked> values{&b, 256, 256};
+    const buffer_view<checked> apart{&b, 512, 16};
+    r->scan(keys, {&b, 128, 16});
+    expect_said({"scan of words", "the words and the total overlap"});
+    r->scan(keys, {&b, 512, 0});
+    expect_said({"the total is empty"});
+    r->scan(view<checked>(c), apart);
+    expect_said({"2048 elements", "1000"});
+    r->sort(keys, {&b, 256, 128});
+    expect_said({"sort", "64 keys", "32 values"});
+    r->sort(keys, {&b, 128, 256});
+    expect_said({"the keys and the values overlap"});
+    r->sort(keys, {});
+    expect_said({"the values", "names no buffer"});
+    r->sort(keys, values, {apart, 65});
+    expect_said({"65", "64 pairs"});
+    r->sort(keys, values, {{&b, 496, 16}, 64});
+    expect_said({"the values and the count overlap"});
+    r->sort(keys, values, {{&b, 512, 8}, 64});
+    expect_said({"count_record"});
+    EXPECT_EQ(inner.counts().sorts + inner.counts().word_scans, 0u);
+    r->scan(keys, apart);
+    r->sort(keys, values);
+    r->sort(keys, values, {apart, 64});
+    EXPECT_TRUE(said.empty());
+    EXPECT_EQ(inner.counts().sorts, 2u);
+    EXPECT_EQ(inner.counts().words_scanned, 64u);
+}
+
+TEST_F(validation, volumes_of_kernels) {
+    const auto b = buffer(1024);
+    const auto v = view<checked>(b);
+    const buffer_view<checked> half_of_it{&b, 512, 512};
+    const auto whole = volume(volume_format::int32);
+    const auto floats = volume(volume_format::float32);
+    const auto halves = volume(volume_format::float16);
+    const auto target = volume(volume_format::float32);
+    const auto second = volume(volume_format::float32);
+    auto r = device.begin();
+    const auto map = [&](std::array<const checked::volume*, 2> read, const checked::volume* write) {
+        r->map(kernels::probe_volume{}, {v, half_of_it, buffer_view<checked>{&b, 0, 512}},
+               volume_bindings<checked, kernels::probe_volume>{read, {write}}, range{0, 1});
+    };
+    map({&floats, nullptr}, &target);
+    expect_said({"map with volumes", "volume 1 is not given"});
+    map({&whole, &floats}, &target);
+    expect_said({"volume 0", "int32"});
+    map({&floats, &halves}, &halves);
+    expect_said({"target volume 0", "float16"});
+    map({&halves, &floats}, &floats);
+    expect_said({"target volume 0 is also volume 1"});
+    map({&floats, &floats}, &target);
+    EXPECT_TRUE(said.empty());
+    EXPECT_EQ(inner.counts().maps, 1u);
+
+    const auto voxels = [&](const checked::volume* write, glm::uvec3 extent) {
+        r->map_voxels(
+            kernels::probe_voxels{}, {v, v},
+            volume_bindings<checked, kernels::probe_voxels>{{&floats, &halves}, {&target, write}},
+            extent);
+    };
+    voxels(&target, glm::uvec3(1));
+    expect_said({"map_voxels", "target volume 0 and target volume 1 are one volume"});
+    voxels(&second, glm::uvec3(65, 1, 1));
+    expect_said({"65 x 1 x 1", "64"});
+    voxels(&second, glm::uvec3(4, 3, 2));
+    EXPECT_TRUE(said.empty());
+    EXPECT_EQ(inner.counts().mapped_voxels, 24u);
+
+    const auto color = image(8, 8);
+    const auto texture = image(2, 2);
+    draw_target<checked> to;
+    to.color = &color;
+    const auto draw = [&](const checked::volume* first, const checked::image* source) {
+        r->draw(kernels::probe_volume_draw{}, {v}, {{{source}}},
+                volume_bindings<checked, kernels::probe_volume_draw>{{first, &halves}, {}},
+                draw_geometry<checked>{}, to, draw_state{});
+    };
+    draw(&whole, &texture);
+    expect_said({"draw with volumes", "volume 0", "int32"});
+    draw(&floats, &color);
+    expect_said({"image 0 is also drawn into"});
+    draw(&floats, &texture);
     EXPECT_TRUE(said.empty());
     EXPECT_EQ(inner.counts().draws, 1u);
 }

@@ -2,6 +2,7 @@
 
 #include "support/cpu_work.hpp"
 
+#include <skybark/core/validated.hpp>
 #include <skybark/kernels/probe_slabs.hpp>
 #include <skybark/kernels/probe_voxels.hpp>
 
@@ -365,6 +366,32 @@ TEST(volume_scan, fused_with_accumulate_has_the_same_bits) {
             }
         }
     }
+}
+
+TEST(volume_scan, fused_calls_are_validated) {
+    using checked = validated<device>;
+    static_assert(fuses_accumulate_scan<checked, kernels::probe_slabs>);
+    device inner;
+    std::string said;
+    checked d(inner, [&](std::string_view sentence) { said = sentence; });
+    const auto boxes = expect_value(d.create_buffer(32));
+    const auto sums = expect_value(d.create_volume({4, 4, 4, volume_format::int32}));
+    const auto wide = expect_value(d.create_volume({5, 4, 4, volume_format::float32}));
+    const auto to = expect_value(d.create_volume({4, 4, 4, volume_format::float32}));
+    const auto fused = [&](const auto& scratch, const auto& out) {
+        said.clear();
+        ASSERT_TRUE(run(d, [&](auto& r) {
+            r.accumulate_scan(kernels::probe_slabs{}, {view<checked>(boxes)}, range{0, 1}, scratch,
+                              out, volume_scan{});
+        }));
+    };
+    fused(to, wide);
+    EXPECT_EQ(said, "accumulate_scan: the scratch volume has the format float32, which cannot be.");
+    fused(sums, wide);
+    EXPECT_EQ(said, "accumulate_scan: the source has 4 x 4 x 4 voxels and the destination "
+                    "5 x 4 x 4.");
+    fused(sums, to);
+    EXPECT_EQ(said, "");
 }
 
 // ----------------------------------------------------------------------------------------- grids

@@ -19,9 +19,11 @@ namespace skybark::conformance {
 struct null_counts {
     std::uint64_t buffers_made = 0;
     std::uint64_t images_made = 0;
+    std::uint64_t volumes_made = 0;
     std::uint64_t buffers_alive = 0;
     std::uint64_t images_alive = 0;
-    std::uint64_t bytes_alive = 0; ///< of buffers and images
+    std::uint64_t volumes_alive = 0;
+    std::uint64_t bytes_alive = 0; ///< of buffers, images and volumes
     std::uint64_t bytes_peak = 0;
     std::uint64_t begins = 0;
     std::uint64_t submits = 0;
@@ -37,11 +39,22 @@ struct null_counts {
     std::uint64_t ring_elements = 0;
     std::uint64_t draws = 0;
     std::uint64_t drawn_vertices = 0; ///< without those that only the device knows
-    std::uint64_t largest_view = 0;   ///< bytes, of views given to kernels
+    std::uint64_t accumulates = 0;
+    std::uint64_t accumulated_elements = 0; ///< the limit where only the device knows
+    std::uint64_t slabs = 0;                ///< that those elements may have
+    std::uint64_t voxels_scanned = 0;
+    std::uint64_t volume_scans = 0;
+    std::uint64_t word_scans = 0;
+    std::uint64_t words_scanned = 0;
+    std::uint64_t sorts = 0;
+    std::uint64_t sorted_pairs = 0; ///< the limit where only the device knows
+    std::uint64_t voxel_maps = 0;
+    std::uint64_t mapped_voxels = 0;
+    std::uint64_t largest_view = 0; ///< bytes, of views given to kernels
 };
 
 struct null_options {
-    device_limits limits{std::uint64_t{1} << 40, 16, 0xffffffff, 16384};
+    device_limits limits{std::uint64_t{1} << 40, 16, 0xffffffff, 16384, 4, 4096};
     std::uint64_t memory_bytes = std::uint64_t{1} << 62; ///< all objects together
     bool keep_contents = true; ///< false: buffers only pretend, and download zeros
 };
@@ -118,6 +131,17 @@ class null_device {
         image_description what_;
     };
 
+    class volume {
+      public:
+        [[nodiscard]] volume_description description() const noexcept { return what_; }
+
+      private:
+        friend class null_device;
+        volume(share counted, volume_description what) : share_(std::move(counted)), what_(what) {}
+        share share_;
+        volume_description what_;
+    };
+
     null_device() : null_device(null_options{}) {}
     explicit null_device(null_options options) : state_(std::make_shared<state>()) {
         state_->options = options;
@@ -154,6 +178,19 @@ class null_device {
         ++state_->counts.images_made;
         return image(share(state_, bytes, &null_counts::images_alive), what);
     }
+    /// The largest buffer is no limit to a volume.
+    [[nodiscard]] result<volume> create_volume(volume_description what) {
+        if (std::max({what.width, what.height, what.depth}) > limits().max_volume_size) {
+            return fail(error_code::out_of_memory, "The null device takes volumes of up to " +
+                                                       std::to_string(limits().max_volume_size) +
+                                                       " voxels a side.");
+        }
+        if (auto ready = memory_for(what.size_bytes()); !ready) {
+            return failure(ready.error());
+        }
+        ++state_->counts.volumes_made;
+        return volume(share(state_, what.size_bytes(), &null_counts::volumes_alive), what);
+    }
 
     [[nodiscard]] result<void> upload(const buffer& to, std::uint64_t offset,
                                       std::span<const std::byte> bytes) {
@@ -186,6 +223,16 @@ class null_device {
         return alive();
     }
 
+    [[nodiscard]] result<void> upload(const volume&, std::span<const std::byte> bytes) {
+        note_upload(bytes.size());
+        return alive();
+    }
+    [[nodiscard]] result<void> download(const volume&, std::span<std::byte> bytes) {
+        note_download(bytes.size());
+        std::fill(bytes.begin(), bytes.end(), std::byte{0});
+        return alive();
+    }
+
     [[nodiscard]] result<null_recorder> begin();
     [[nodiscard]] result<void> submit(null_recorder& done);
 
@@ -212,11 +259,14 @@ class null_device {
         return {};
     }
     [[nodiscard]] result<void> room_for(std::uint64_t bytes) const {
+        return memory_for(bytes > limits().max_buffer_bytes ? ~std::uint64_t{0} : bytes);
+    }
+    [[nodiscard]] result<void> memory_for(std::uint64_t bytes) const {
         if (auto going = alive(); !going) {
             return going;
         }
         const std::uint64_t used = state_->counts.bytes_alive;
-        if (bytes > limits().max_buffer_bytes || bytes > state_->options.memory_bytes - used) {
+        if (bytes > state_->options.memory_bytes - used) {
             return fail(error_code::out_of_memory,
                         "The null device has no room for " + std::to_string(bytes) +
                             " bytes: " + std::to_string(used) + " are in use.");
@@ -288,10 +338,57 @@ class null_recorder {
     void draw(const K&, const bindings<null_device, K>& buffers,
               const image_bindings<null_device, K>&, const draw_geometry<null_device>& geometry,
               const draw_target<null_device>&, draw_state) {
-        ++counts().draws;
-        counts().drawn_vertices += geometry.length ? 0 : geometry.count;
+        note_draw(buffers, geometry);
+    }
+    template <draw_kernel K>
+    requires names_volumes<K>
+    void draw(const K&, const bindings<null_device, K>& buffers,
+              const image_bindings<null_device, K>&, const volume_bindings<null_device, K>&,
+              const draw_geometry<null_device>& geometry, const draw_target<null_device>&,
+              draw_state) {
+        note_draw(buffers, geometry);
+    }
+
+    template <grid_map_kernel K>
+    void map(const K&, const bindings<null_device, K>& buffers,
+             const volume_bindings<null_device, K>&, range elements) {
+        note_map(buffers, elements.count);
+    }
+    template <voxel_kernel K>
+    void map_voxels(const K&, const bindings<null_device, K>& buffers,
+                    const volume_bindings<null_device, K>&, glm::uvec3 extent) {
+        ++counts().voxel_maps;
+        counts().mapped_voxels += std::uint64_t{extent.x} * extent.y * extent.z;
         note_views(buffers);
-        note_view(geometry.indices);
+    }
+
+    template <slab_kernel K>
+    void accumulate(const K& kernel, const bindings<null_device, K>& buffers, range elements,
+                    const accumulation<null_device>&) {
+        note_accumulate(buffers, elements.count, kernel.slabs());
+    }
+    template <slab_kernel K>
+    void accumulate(const K& kernel, const bindings<null_device, K>& buffers,
+                    const counted<null_device>& elements, const accumulation<null_device>&) {
+        note_accumulate(buffers, elements.limit, kernel.slabs());
+    }
+    void scan(const null_device::volume& from, const null_device::volume&, const volume_scan&) {
+        const volume_description what = from.description();
+        ++counts().volume_scans;
+        counts().voxels_scanned += std::uint64_t{what.width} * what.height * what.depth;
+    }
+    void scan(const view& words, const view& total) {
+        ++counts().word_scans;
+        counts().words_scanned += words.size / 4;
+        note_view(words);
+        note_view(total);
+    }
+
+    void sort(const view& keys, const view& values) {
+        note_sort(keys, values, std::min(keys.size, values.size) / 4);
+    }
+    void sort(const view& keys, const view& values, const counted<null_device>& pairs) {
+        note_sort(keys, values, pairs.limit);
     }
 
   private:
@@ -305,6 +402,27 @@ class null_recorder {
         for (const view& v : views) {
             note_view(v);
         }
+    }
+    template <std::size_t N>
+    void note_draw(const std::array<view, N>& views, const draw_geometry<null_device>& geometry) {
+        ++counts().draws;
+        counts().drawn_vertices += geometry.length ? 0 : geometry.count;
+        note_views(views);
+        note_view(geometry.indices);
+    }
+    template <std::size_t N>
+    void note_accumulate(const std::array<view, N>& views, std::uint64_t elements,
+                         std::uint64_t slabs) {
+        ++counts().accumulates;
+        counts().accumulated_elements += elements;
+        counts().slabs += elements * slabs;
+        note_views(views);
+    }
+    void note_sort(const view& keys, const view& values, std::uint64_t pairs) {
+        ++counts().sorts;
+        counts().sorted_pairs += pairs;
+        note_view(keys);
+        note_view(values);
     }
     template <std::size_t N>
     void note_map(const std::array<view, N>& views, std::uint64_t elements) {
@@ -344,5 +462,6 @@ inline result<void> null_device::submit(null_recorder&) {
 }
 
 static_assert(backend<null_device>);
+static_assert(volume_backend<null_device> && scans<null_device> && sorts<null_device>);
 
 } // namespace skybark::conformance

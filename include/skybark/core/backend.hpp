@@ -166,7 +166,7 @@ enum class scan_axis { none, x, y, z }; ///< none: every voxel is a sum of its o
 enum class scan_direction { ascending, descending };
 enum class scan_share {
     whole, ///< a voxel's sum has its own value in it
-    half,  ///< half of it: the sum up to the voxel's middle
+    half,  ///< the sum up to the voxel's middle: float(before) + 0.5f · float(own)
     none,  ///< only what came before
 };
 

@@ -53,6 +53,30 @@ struct misuse_log {
     return a_size != 0 && b_size != 0 && a < b + b_size && b < a + a_size;
 }
 
+/// A backend's volume, or nothing where it has none.
+struct no_volume {};
+template <class B>
+struct volume_type {
+    using type = no_volume;
+};
+template <class B>
+requires requires { typename B::volume; }
+struct volume_type<B> {
+    using type = typename B::volume;
+};
+
+[[nodiscard]] constexpr const char* name_of(volume_format format) {
+    switch (format) {
+    case volume_format::int32:
+        return "int32";
+    case volume_format::float32:
+        return "float32";
+    case volume_format::float16:
+        break;
+    }
+    return "float16";
+}
+
 /// An object of the wrapped device, and whose it is.
 template <class T>
 struct held {
@@ -96,6 +120,23 @@ class validated {
         std::shared_ptr<const held_type> held_;
     };
 
+    /// Only where the wrapped device has volumes is there a way to get one.
+    class volume {
+      public:
+        [[nodiscard]] volume_description description() const {
+            return held_ ? volume_description(held_->object.description()) : volume_description{};
+        }
+        [[nodiscard]] const typename detail::volume_type<B>::type& inner() const {
+            return held_->object;
+        }
+
+      private:
+        friend class validated;
+        using held_type = detail::held<typename detail::volume_type<B>::type>;
+        explicit volume(std::shared_ptr<const held_type> held) : held_(std::move(held)) {}
+        std::shared_ptr<const held_type> held_;
+    };
+
     class recorder;
 
     explicit validated(B& inner, misuse_handler on_misuse = {})
@@ -120,6 +161,12 @@ class validated {
             return refuse("create_image: an image of " + sides(what) + " pixels has no pixels.");
         }
         return hold<image>(inner_->create_image(what));
+    }
+    [[nodiscard]] result<volume> create_volume(volume_description what) requires volume_backend<B> {
+        if (what.width == 0 || what.height == 0 || what.depth == 0) {
+            return refuse("create_volume: a volume of " + sides(what) + " voxels has no voxels.");
+        }
+        return hold<volume>(inner_->create_volume(what));
     }
 
     [[nodiscard]] result<void> upload(const buffer& to, std::uint64_t offset,
@@ -149,6 +196,21 @@ class validated {
         return inner_->download(from.inner(), bytes);
     }
 
+    [[nodiscard]] result<void> upload(const volume& to,
+                                      std::span<const std::byte> bytes) requires volume_backend<B> {
+        if (auto wrong = check_voxels("upload", to, bytes.size()); !wrong.empty()) {
+            return refuse(std::move(wrong));
+        }
+        return inner_->upload(to.inner(), bytes);
+    }
+    [[nodiscard]] result<void> download(const volume& from,
+                                        std::span<std::byte> bytes) requires volume_backend<B> {
+        if (auto wrong = check_voxels("download", from, bytes.size()); !wrong.empty()) {
+            return refuse(std::move(wrong));
+        }
+        return inner_->download(from.inner(), bytes);
+    }
+
     [[nodiscard]] result<recorder> begin() {
         auto begun = inner_->begin();
         if (!begun) {
@@ -166,8 +228,8 @@ class validated {
         done.submitted_ = true;
         for (const std::weak_ptr<const void>& used : done.used_) {
             if (used.expired()) {
-                return refuse("submit: a buffer or an image that the recorder uses is gone; it "
-                              "must outlive the submission.");
+                return refuse("submit: a buffer, an image or a volume that the recorder uses is "
+                              "gone; it must outlive the submission.");
             }
         }
         return inner_->submit(done.inner_);
@@ -190,6 +252,10 @@ class validated {
 
     [[nodiscard]] static std::string sides(image_description what) {
         return detail::digits(what.width) + " x " + detail::digits(what.height);
+    }
+    [[nodiscard]] static std::string sides(volume_description what) {
+        return detail::digits(what.width) + " x " + detail::digits(what.height) + " x " +
+               detail::digits(what.depth);
     }
     template <class Object>
     [[nodiscard]] static std::string check_owner(const std::string& where, const Object& object,
@@ -223,6 +289,18 @@ class validated {
                    ? ""
                    : call + ": an image of " + sides(what) + " pixels has " +
                          detail::digits(needed) + " bytes, not " + detail::digits(size) + ".";
+    }
+    [[nodiscard]] std::string check_voxels(const std::string& call, const volume& at,
+                                           std::uint64_t size) const {
+        if (auto wrong = check_owner(call + ": the volume", at, log_); !wrong.empty()) {
+            return wrong;
+        }
+        const volume_description what = at.description();
+        return size == what.size_bytes() ? ""
+                                         : call + ": a volume of " + sides(what) + " voxels of " +
+                                               detail::name_of(what.format) + " has " +
+                                               detail::digits(what.size_bytes()) + " bytes, not " +
+                                               detail::digits(size) + ".";
     }
 
     B* inner_;
@@ -350,27 +428,132 @@ class validated<B>::recorder {
               const image_bindings<validated, K>& images, const draw_geometry<validated>& geometry,
               const draw_target<validated>& target, draw_state state) {
         check c(*this, "draw");
-        c.template buffers<K>(buffers, false);
-        image_bindings<B, K> bound{};
-        check_target(c, target);
-        for (std::size_t i = 0; i < images.size(); ++i) {
-            const std::string which = "image " + detail::digits(i);
-            c.image(images[i].image, which);
-            c.that(images[i].image == nullptr ||
-                       (images[i].image != target.color && images[i].image != target.depth),
-                   which + " is also drawn into.");
-            if (c.passed()) {
-                bound[i] = {&images[i].image->inner(), images[i].filter, images[i].wrap};
-            }
-        }
-        check_geometry(c, geometry);
+        check_draw<K>(c, buffers, images, geometry, target);
         if (c.passed()) {
-            const draw_geometry<B> what{convert(geometry.indices), geometry.first, geometry.count,
-                                        geometry.base_vertex, convert(geometry.length)};
-            const draw_target<B> to{target.color ? &target.color->inner() : nullptr,
-                                    target.depth ? &target.depth->inner() : nullptr,
-                                    target.clear_color, target.clear_depth};
-            inner_.draw(kernel, convert(buffers), bound, what, to, state);
+            inner_.draw(kernel, convert(buffers), convert<K>(images), convert(geometry),
+                        convert(target), state);
+        }
+    }
+    template <draw_kernel K>
+    requires draws_volumes<B, K>
+    void draw(const K& kernel, const bindings<validated, K>& buffers,
+              const image_bindings<validated, K>& images,
+              const volume_bindings<validated, K>& volumes,
+              const draw_geometry<validated>& geometry, const draw_target<validated>& target,
+              draw_state state) {
+        check c(*this, "draw with volumes");
+        check_draw<K>(c, buffers, images, geometry, target);
+        check_volumes<K>(c, volumes);
+        if (c.passed()) {
+            inner_.draw(kernel, convert(buffers), convert<K>(images), convert<K>(volumes),
+                        convert(geometry), convert(target), state);
+        }
+    }
+
+    template <grid_map_kernel K>
+    requires maps_grids<B, K>
+    void map(const K& kernel, const bindings<validated, K>& buffers,
+             const volume_bindings<validated, K>& volumes, range elements) {
+        check c(*this, "map with volumes");
+        c.template buffers<K>(buffers, true);
+        check_volumes<K>(c, volumes);
+        c.elements(elements);
+        if (c.passed()) {
+            inner_.map(kernel, convert(buffers), convert<K>(volumes), elements);
+        }
+    }
+    template <voxel_kernel K>
+    requires maps_voxels<B, K>
+    void map_voxels(const K& kernel, const bindings<validated, K>& buffers,
+                    const volume_bindings<validated, K>& volumes, glm::uvec3 extent) {
+        check c(*this, "map_voxels");
+        c.template buffers<K>(buffers, true);
+        check_volumes<K>(c, volumes);
+        const std::uint32_t longest = std::max({extent.x, extent.y, extent.z});
+        c.that(longest <= limits_.max_volume_size,
+               "the extent of " + sides(volume_description{extent.x, extent.y, extent.z, {}}) +
+                   " voxels is longer than a volume may be, " +
+                   detail::digits(limits_.max_volume_size) + ".");
+        if (c.passed()) {
+            inner_.map_voxels(kernel, convert(buffers), convert<K>(volumes), extent);
+        }
+    }
+
+    template <slab_kernel K>
+    requires accumulates<B, K>
+    void accumulate(const K& kernel, const bindings<validated, K>& buffers, range elements,
+                    const accumulation<validated>& how) {
+        check c(*this, "accumulate");
+        c.elements(elements);
+        check_accumulation(c, kernel, buffers, how.into, "the volume to add to");
+        if (c.passed()) {
+            inner_.accumulate(kernel, convert(buffers), elements, convert(how));
+        }
+    }
+    template <slab_kernel K>
+    requires accumulates<B, K>
+    void accumulate(const K& kernel, const bindings<validated, K>& buffers,
+                    const counted<validated>& elements, const accumulation<validated>& how) {
+        check c(*this, "accumulate over a count");
+        c.length(elements);
+        check_accumulation(c, kernel, buffers, how.into, "the volume to add to");
+        if (c.passed()) {
+            inner_.accumulate(kernel, convert(buffers), convert(elements), convert(how));
+        }
+    }
+    template <slab_kernel K>
+    requires fuses_accumulate_scan<B, K>
+    void accumulate_scan(const K& kernel, const bindings<validated, K>& buffers, range elements,
+                         const volume& scratch, const volume& to, const volume_scan& how) {
+        check c(*this, "accumulate_scan");
+        c.elements(elements);
+        check_accumulation(c, kernel, buffers, &scratch, "the scratch volume");
+        check_scan(c, scratch, to, how);
+        if (c.passed()) {
+            inner_.accumulate_scan(kernel, convert(buffers), elements, scratch.inner(), to.inner(),
+                                   how);
+        }
+    }
+
+    void scan(const volume& from, const volume& to,
+              const volume_scan& how) requires volume_backend<B> {
+        check c(*this, "scan");
+        check_scan(c, from, to, how);
+        if (c.passed()) {
+            inner_.scan(from.inner(), to.inner(), how);
+        }
+    }
+    void scan(const view& words, const view& total) requires scans<B> {
+        check c(*this, "scan of words");
+        c.view(words, "the view of the words");
+        c.view(total, "the view of the total");
+        c.that(total.size >= 4, "the view of the total is empty.");
+        c.apart(words, "the words", total, "the total");
+        c.elements(words_in(words));
+        if (c.passed()) {
+            inner_.scan(convert(words), convert(total));
+        }
+    }
+
+    void sort(const view& keys, const view& values) requires sorts<B> {
+        check c(*this, "sort");
+        check_pairs(c, keys, values);
+        if (c.passed()) {
+            inner_.sort(convert(keys), convert(values));
+        }
+    }
+    void sort(const view& keys, const view& values,
+              const counted<validated>& pairs) requires sorts<B> {
+        check c(*this, "sort of a count");
+        check_pairs(c, keys, values);
+        c.length(pairs);
+        c.that(pairs.limit <= keys.size / 4, "the count may reach " + detail::digits(pairs.limit) +
+                                                 ", and there are " +
+                                                 detail::digits(keys.size / 4) + " pairs.");
+        c.apart(keys, "the keys", pairs.count, "the count");
+        c.apart(values, "the values", pairs.count, "the count");
+        if (c.passed()) {
+            inner_.sort(convert(keys), convert(values), convert(pairs));
         }
     }
 
@@ -427,6 +610,18 @@ class validated<B>::recorder {
         void image(const validated::image* image, const std::string& what) {
             that(image != nullptr, what + " is not given.");
             owned(image, what);
+        }
+        void volume(const validated::volume* volume, const std::string& what) {
+            that(volume != nullptr, what + " is not given.");
+            owned(volume, what);
+        }
+        void format(const validated::volume* volume, const std::string& what,
+                    std::initializer_list<volume_format> right) {
+            if (passed_) {
+                const volume_format has = volume->description().format;
+                that(std::find(right.begin(), right.end(), has) != right.end(),
+                     what + " has the format " + detail::name_of(has) + ", which cannot be.");
+            }
         }
         void apart(const buffer_view<validated>& a, const std::string& what_a,
                    const buffer_view<validated>& b, const std::string& what_b) {
@@ -539,6 +734,88 @@ class validated<B>::recorder {
                        detail::digits(vertices) + " vertices.");
         }
     }
+    template <class K>
+    static void check_draw(check& c, const bindings<validated, K>& buffers,
+                           const image_bindings<validated, K>& images,
+                           const draw_geometry<validated>& geometry,
+                           const draw_target<validated>& target) {
+        c.template buffers<K>(buffers, false);
+        check_target(c, target);
+        for (std::size_t i = 0; i < images.size(); ++i) {
+            const std::string which = "image " + detail::digits(i);
+            c.image(images[i].image, which);
+            c.that(images[i].image == nullptr ||
+                       (images[i].image != target.color && images[i].image != target.depth),
+                   which + " is also drawn into.");
+        }
+        check_geometry(c, geometry);
+    }
+    template <class K>
+    static void check_volumes(check& c, const volume_bindings<validated, K>& volumes) {
+        const auto name = [](const char* kind, std::size_t i) {
+            return std::string(kind) + detail::digits(i);
+        };
+        for (std::size_t i = 0; i < volumes.read.size(); ++i) {
+            c.volume(volumes.read[i], name("volume ", i));
+            c.format(volumes.read[i], name("volume ", i),
+                     {volume_format::float32, volume_format::float16});
+        }
+        for (std::size_t i = 0; i < volumes.write.size(); ++i) {
+            c.volume(volumes.write[i], name("target volume ", i));
+            c.format(volumes.write[i], name("target volume ", i), {volume_format::float32});
+            for (std::size_t j = 0; j < volumes.read.size(); ++j) {
+                c.that(volumes.write[i] != volumes.read[j], name("target volume ", i) +
+                                                                " is also " + name("volume ", j) +
+                                                                ", which is read.");
+            }
+            for (std::size_t j = 0; j < i; ++j) {
+                c.that(volumes.write[i] != volumes.write[j], name("target volume ", j) + " and " +
+                                                                 name("target volume ", i) +
+                                                                 " are one volume.");
+            }
+        }
+    }
+    template <class K>
+    static void check_accumulation(check& c, const K& kernel, const bindings<validated, K>& buffers,
+                                   const volume* into, const std::string& what) {
+        c.template buffers<K>(buffers, false);
+        c.volume(into, what);
+        c.format(into, what, {volume_format::int32});
+        c.that(kernel.slabs() < 1u << 31, "the kernel's parameters make up to " +
+                                              detail::digits(kernel.slabs()) +
+                                              " slabs an element, which cannot be meant.");
+    }
+    static void check_scan(check& c, const volume& from, const volume& to, const volume_scan& how) {
+        c.volume(&from, "the source");
+        c.volume(&to, "the destination");
+        c.that(&from != &to, "the source is also the destination.");
+        if (!c.passed()) {
+            return;
+        }
+        const volume_description a = from.description();
+        const volume_description b = to.description();
+        c.that(a.width == b.width && a.height == b.height && a.depth == b.depth,
+               "the source has " + sides(a) + " voxels and the destination " + sides(b) + ".");
+        c.format(&from, "the source", {volume_format::int32, volume_format::float32});
+        c.that(a.format == volume_format::int32 || b.format != volume_format::int32,
+               "the source is of float32 and the destination of int32: floats stay floats.");
+        c.that(b.format != volume_format::int32 ||
+                   (how.share != scan_share::half && how.scale == 1.0f),
+               "whole numbers are asked for, with a scale of " + std::to_string(how.scale) +
+                   (how.share == scan_share::half ? " and halves of voxels." : "."));
+    }
+    [[nodiscard]] static range words_in(const view& v) {
+        return {0, static_cast<std::uint32_t>(std::min<std::uint64_t>(v.size / 4, 0xffffffff))};
+    }
+    static void check_pairs(check& c, const view& keys, const view& values) {
+        c.view(keys, "the view of the keys");
+        c.view(values, "the view of the values");
+        c.that(keys.size == values.size, "there are " + detail::digits(keys.size / 4) +
+                                             " keys and " + detail::digits(values.size / 4) +
+                                             " values.");
+        c.apart(keys, "the keys", values, "the values");
+        c.elements(words_in(keys));
+    }
     static void check_target(check& c, const draw_target<validated>& target) {
         c.that(target.color != nullptr || target.depth != nullptr,
                "there is nothing to draw into.");
@@ -606,6 +883,40 @@ class validated<B>::recorder {
     }
     [[nodiscard]] static triangle_list<B> convert(const triangle_list<validated>& out) {
         return {convert(out.vertices), convert(out.count), out.policy};
+    }
+    [[nodiscard]] static draw_geometry<B> convert(const draw_geometry<validated>& what) {
+        return {convert(what.indices), what.first, what.count, what.base_vertex,
+                convert(what.length)};
+    }
+    [[nodiscard]] static draw_target<B> convert(const draw_target<validated>& to) {
+        return {to.color ? &to.color->inner() : nullptr, to.depth ? &to.depth->inner() : nullptr,
+                to.clear_color, to.clear_depth};
+    }
+    template <class K>
+    [[nodiscard]] static image_bindings<B, K> convert(const image_bindings<validated, K>& images) {
+        image_bindings<B, K> bound{};
+        for (std::size_t i = 0; i < images.size(); ++i) {
+            bound[i] = {&images[i].image->inner(), images[i].filter, images[i].wrap};
+        }
+        return bound;
+    }
+    template <class K>
+    [[nodiscard]] static volume_bindings<B, K>
+    convert(const volume_bindings<validated, K>& volumes) {
+        volume_bindings<B, K> bound{};
+        for (std::size_t i = 0; i < volumes.read.size(); ++i) {
+            bound.read[i] = &volumes.read[i]->inner();
+        }
+        for (std::size_t i = 0; i < volumes.write.size(); ++i) {
+            bound.write[i] = &volumes.write[i]->inner();
+        }
+        return bound;
+    }
+    // A template because a backend without volumes has no accumulation<B>.
+    template <class Accumulation>
+    [[nodiscard]] static auto
+    convert(const Accumulation& how) requires std::same_as<Accumulation, accumulation<validated>> {
+        return accumulation<B>{&how.into->inner(), how.clear, how.route, how.policy};
     }
 
     typename B::recorder inner_;
