@@ -432,7 +432,7 @@ TEST(path_tracer, a_white_cloud_vanishes_in_a_white_furnace) {
     const auto dark = clouds::trace_radiance(*cloud, phase, to_sun, rays, 0, with_paths(500));
     const auto light = clouds::trace_radiance(*cloud, phase, to_sun, rays, 2, with_paths(500));
     ASSERT_TRUE(dark && light);
-    for (int i = 0; i < 2; ++i) {
+    for (std::size_t i = 0; i < 2; ++i) {
         EXPECT_GT((*dark)[i].mean, 0);
         EXPECT_NEAR((*light)[i].mean - (*dark)[i].mean, 2, 1e-12);
     }
