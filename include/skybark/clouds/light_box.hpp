@@ -236,8 +236,8 @@ class column_depths {
     const std::array<glm::dvec3, 3> axes = detail::light_axes(to_sun);
     const glm::dvec3 middle = (glm::dvec3(bounds.low) + glm::dvec3(bounds.high)) * 0.5;
     const glm::dvec3 half = glm::dvec3(size) * 0.5;
-    glm::dvec3 low;
-    glm::dvec3 high;
+    glm::dvec3 low(0);
+    glm::dvec3 high(0);
     for (int a = 0; a < 3; ++a) {
         const glm::dvec3& axis = axes[static_cast<std::size_t>(a)];
         const double reach = glm::dot(glm::abs(axis), half);
