@@ -65,18 +65,20 @@ std::vector<named> all() {
 } // namespace
 
 TEST(phase, integrates_to_one_over_the_sphere) {
-    for (const auto& [name, phase] : all()) {
-        EXPECT_NEAR(over_sphere([&](double u) { return phase(u); }), 1, 1e-9) << name;
+    for (const named& one : all()) {
+        const phase_function& phase = one.of;
+        EXPECT_NEAR(over_sphere([&](double u) { return phase(u); }), 1, 1e-9) << one.name;
     }
 }
 
 TEST(phase, mean_cosine_and_second_moment_are_those_of_its_values) {
-    for (const auto& [name, phase] : all()) {
+    for (const named& one : all()) {
+        const phase_function& phase = one.of;
         EXPECT_NEAR(over_sphere([&](double u) { return u * phase(u); }), phase.mean_cosine(), 1e-9)
-            << name;
+            << one.name;
         EXPECT_NEAR(over_sphere([&](double u) { return (1.5 * u * u - 0.5) * phase(u); }),
                     phase.second_moment(), 1e-9)
-            << name;
+            << one.name;
     }
 }
 
