@@ -5,4 +5,5 @@
 #define FROM_IMAGE iimage3D
 #define INTO_FORMAT r16f
 #define INTO_IMAGE image3D
+#define INTO_FLOAT16
 #include "volume_scan.glsl"

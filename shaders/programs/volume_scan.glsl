@@ -8,11 +8,29 @@
 // destination, as large, one at SKYBARK_TARGET_BINDING.
 //
 // Sums of int32 are exact, and become floats once for each voxel: float(before) + 0.5 * float(own)
-// for halves, float(before + own) for the whole.
+// for halves, float(before + own) for the whole. Floats are rounded to float16 here.
 layout(local_size_x = 64) in;
 #include "../skeletons/parameters.glsl"
 layout(binding = SKYBARK_SUMS_BINDING, FROM_FORMAT) readonly uniform FROM_IMAGE from_volume;
 layout(binding = SKYBARK_TARGET_BINDING, INTO_FORMAT) writeonly uniform INTO_IMAGE into_volume;
+
+#ifdef INTO_FLOAT16
+// The nearest number that 16 bits hold, the even one of two. llvmpipe's own stores cut off instead.
+float rounded(float value) {
+    uint bits = floatBitsToUint(value);
+    uint size = bits & 0x7fffffffu;
+    if (size >= 0x477ff000u) { // 65520: infinite, unless it is no number
+        size = size > 0x7f800000u ? size : 0x7f800000u;
+    } else if (size < 0x38800000u) { // 2^-14: subnormal, whole multiples of 2^-24
+        size = floatBitsToUint(roundEven(uintBitsToFloat(size) * 16777216.0) / 16777216.0);
+    } else {
+        size = (size + 0xfffu + ((size >> 13) & 1u)) & ~0x1fffu;
+    }
+    return uintBitsToFloat(size | (bits & 0x80000000u));
+}
+#else
+float rounded(float value) { return value; }
+#endif
 
 #ifdef INTO_WHOLE_NUMBERS
 ivec4 shared_out(int before, int own) {
@@ -23,7 +41,7 @@ vec4 shared_out(NUMBER before, NUMBER own) {
     float sum = skybark_header.z == 0u   ? float(before + own)
                 : skybark_header.z == 1u ? float(before) + 0.5 * float(own)
                                          : float(before);
-    return vec4(sum * uintBitsToFloat(skybark_header.w));
+    return vec4(rounded(sum * uintBitsToFloat(skybark_header.w)));
 }
 #endif
 

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ca36a015e4dee01b1bbace703ad5ddf203b395f06de817dc1ce5c24c4069789b
+// sha256 031083684084c487cc86bb296f4ea2b76c4ca817414ec14a974bda72a327009f
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,7 @@ inline constexpr std::string_view scan_float32_float16_comp = R"glsl(#version 45
 #define FROM_IMAGE image3D
 #define INTO_FORMAT r16f
 #define INTO_IMAGE image3D
+#define INTO_FLOAT16
 layout(local_size_x = 64) in;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
@@ -63,6 +64,22 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 layout(binding = SKYBARK_SUMS_BINDING, FROM_FORMAT) readonly uniform FROM_IMAGE from_volume;
 layout(binding = SKYBARK_TARGET_BINDING, INTO_FORMAT) writeonly uniform INTO_IMAGE into_volume;
+#ifdef INTO_FLOAT16
+float rounded(float value) {
+    uint bits = floatBitsToUint(value);
+    uint size = bits & 0x7fffffffu;
+    if (size >= 0x477ff000u) { // 65520: infinite, unless it is no number
+        size = size > 0x7f800000u ? size : 0x7f800000u;
+    } else if (size < 0x38800000u) { // 2^-14: subnormal, whole multiples of 2^-24
+        size = floatBitsToUint(roundEven(uintBitsToFloat(size) * 16777216.0) / 16777216.0);
+    } else {
+        size = (size + 0xfffu + ((size >> 13) & 1u)) & ~0x1fffu;
+    }
+    return uintBitsToFloat(size | (bits & 0x80000000u));
+}
+#else
+float rounded(float value) { return value; }
+#endif
 #ifdef INTO_WHOLE_NUMBERS
 ivec4 shared_out(int before, int own) {
     return ivec4(skybark_header.z == 2u ? before : before + own);
@@ -72,7 +89,7 @@ vec4 shared_out(NUMBER before, NUMBER own) {
     float sum = skybark_header.z == 0u   ? float(before + own)
                 : skybark_header.z == 1u ? float(before) + 0.5 * float(own)
                                          : float(before);
-    return vec4(sum * uintBitsToFloat(skybark_header.w));
+    return vec4(rounded(sum * uintBitsToFloat(skybark_header.w)));
 }
 #endif
 void main() {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 aee0d51bb5e0dc849caf656fabfe8044447848441067e922aff54be80ce5d064
+// sha256 49e25edb571f6d67c8c297a65b5f86f55499b7ea9fdb697bbd09956cbe4ccec1
 #pragma once
 
 #include <cstdint>
@@ -63,6 +63,22 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 layout(binding = SKYBARK_SUMS_BINDING, FROM_FORMAT) readonly uniform FROM_IMAGE from_volume;
 layout(binding = SKYBARK_TARGET_BINDING, INTO_FORMAT) writeonly uniform INTO_IMAGE into_volume;
+#ifdef INTO_FLOAT16
+float rounded(float value) {
+    uint bits = floatBitsToUint(value);
+    uint size = bits & 0x7fffffffu;
+    if (size >= 0x477ff000u) { // 65520: infinite, unless it is no number
+        size = size > 0x7f800000u ? size : 0x7f800000u;
+    } else if (size < 0x38800000u) { // 2^-14: subnormal, whole multiples of 2^-24
+        size = floatBitsToUint(roundEven(uintBitsToFloat(size) * 16777216.0) / 16777216.0);
+    } else {
+        size = (size + 0xfffu + ((size >> 13) & 1u)) & ~0x1fffu;
+    }
+    return uintBitsToFloat(size | (bits & 0x80000000u));
+}
+#else
+float rounded(float value) { return value; }
+#endif
 #ifdef INTO_WHOLE_NUMBERS
 ivec4 shared_out(int before, int own) {
     return ivec4(skybark_header.z == 2u ? before : before + own);
@@ -72,7 +88,7 @@ vec4 shared_out(NUMBER before, NUMBER own) {
     float sum = skybark_header.z == 0u   ? float(before + own)
                 : skybark_header.z == 1u ? float(before) + 0.5 * float(own)
                                          : float(before);
-    return vec4(sum * uintBitsToFloat(skybark_header.w));
+    return vec4(rounded(sum * uintBitsToFloat(skybark_header.w)));
 }
 #endif
 void main() {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 6e7b5029ac9b0c0ae855593931a1a9c901dd47e2c6599b233e947069d5cc064a
+// sha256 05faed8dbba3d99c066631315563f6a731f75e135bed76483814d59492b6f8eb
 #pragma once
 
 #include <cstdint>
