@@ -27,8 +27,10 @@
 #include <skybark/opengl/programs/harris_splat.hpp>
 #include <skybark/opengl/programs/hermite_branch.hpp>
 #include <skybark/opengl/programs/leaf_blade.hpp>
+#include <skybark/opengl/programs/light_at_points.hpp>
 #include <skybark/opengl/programs/lit_bark.hpp>
 #include <skybark/opengl/programs/lit_branch.hpp>
+#include <skybark/opengl/programs/lit_grid.hpp>
 #include <skybark/opengl/programs/lit_leaf.hpp>
 #include <skybark/opengl/programs/lit_puff.hpp>
 #include <skybark/opengl/programs/meadow_ground.hpp>

@@ -23,8 +23,10 @@
 #include <skybark/vulkan/programs/harris_splat.hpp>
 #include <skybark/vulkan/programs/hermite_branch.hpp>
 #include <skybark/vulkan/programs/leaf_blade.hpp>
+#include <skybark/vulkan/programs/light_at_points.hpp>
 #include <skybark/vulkan/programs/lit_bark.hpp>
 #include <skybark/vulkan/programs/lit_branch.hpp>
+#include <skybark/vulkan/programs/lit_grid.hpp>
 #include <skybark/vulkan/programs/lit_leaf.hpp>
 #include <skybark/vulkan/programs/lit_puff.hpp>
 #include <skybark/vulkan/programs/meadow_ground.hpp>

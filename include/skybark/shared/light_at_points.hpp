@@ -1,0 +1,37 @@
+// clang-format off
+// Made by shaders/embed.py. Edit the text in shaders/ instead.
+// sha256 f63b86c9c69940bf150d0dbb3c82919e2445685b8c032bd92fc8e4e4b0ce7bef
+#pragma once
+
+#include <skybark/shared/glsl.hpp>
+#include <skybark/shared/attenuation.hpp>
+#include <skybark/shared/cloud_shadow.hpp>
+
+namespace skybark::shared {
+
+// Light at single places, out of what an attenuation volume holds around them.
+
+// Linear between four values, x and z in 0…1.
+inline float bilinear(float v00, float v10, float v01, float v11, float x, float z) {
+    float near = v00 + (v10 - v00) * x;
+    float far = v01 + (v11 - v01) * x;
+    return near + (far - near) * z;
+}
+
+// The mean light of octaves, each with `weight` and `part` of the attenuation of the one before.
+// One octave: the light that comes through.
+inline float octaves_light(float attenuation, uint octaves, float weight, float part) {
+    float sum = 0.0f;
+    float weights = 0.0f;
+    float w = 1.0f;
+    float depth = attenuation;
+    for (uint i = 0u; i < octaves; i = i + 1u) {
+        sum = sum + w * cloud_light(depth);
+        weights = weights + w;
+        w = w * weight;
+        depth = depth * part;
+    }
+    return sum / weights;
+}
+
+} // namespace skybark::shared
