@@ -13,6 +13,7 @@
 namespace {
 
 using namespace skybark;
+using namespace skybark::clouds;
 
 constexpr glm::vec3 slanting{0.4f, 0.7f, -0.3f};
 constexpr std::uint32_t side = 64;

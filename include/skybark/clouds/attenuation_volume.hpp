@@ -26,7 +26,7 @@
 #include <cassert>
 #include <optional>
 
-namespace skybark {
+namespace skybark::clouds {
 
 enum class attenuation_method { impulse_scan, shadow_polygons };
 
@@ -331,4 +331,14 @@ class attenuation_volume {
     std::optional<typename B::buffer> count_;
 };
 
+} // namespace skybark::clouds
+
+namespace skybark {
+using clouds::attenuation_method;
+using clouds::attenuation_profile;
+using clouds::attenuation_light;
+using clouds::polygon_source;
+using clouds::attenuation_options;
+using clouds::density_box;
+using clouds::attenuation_volume;
 } // namespace skybark

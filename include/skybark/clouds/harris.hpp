@@ -19,7 +19,7 @@
 #include <optional>
 #include <vector>
 
-namespace skybark {
+namespace skybark::clouds {
 
 struct harris_options {
     float sigmas = 3;  ///< standard deviations of the Gaussian in a particle's radius
@@ -149,4 +149,9 @@ class harris_light {
     std::optional<typename B::buffer> value_;
 };
 
+} // namespace skybark::clouds
+
+namespace skybark {
+using clouds::harris_options;
+using clouds::harris_light;
 } // namespace skybark

@@ -22,7 +22,7 @@
 #include <span>
 #include <string>
 
-namespace skybark {
+namespace skybark::clouds {
 
 /// A fitted grid, and how many voxels it has.
 struct light_box {
@@ -249,4 +249,12 @@ class column_depths {
         voxels, bounds.largest_radius};
 }
 
+} // namespace skybark::clouds
+
+namespace skybark {
+using clouds::light_box;
+using clouds::cloud_bounds;
+using clouds::finest_quantum;
+using clouds::check_particles;
+using clouds::fit_light_box;
 } // namespace skybark
