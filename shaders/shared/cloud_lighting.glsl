@@ -107,3 +107,24 @@ vec4 behind_air(vec3 own, float alpha, float hidden, vec3 air) {
     return vec4(own.x * seen + air.x * before, own.y * seen + air.y * before,
                 own.z * seen + air.z * before, alpha);
 }
+
+// Where a ray from `eye` along the unit `direction` is inside a box: from x to y metres before the
+// eye; nowhere if y <= x.
+vec2 ray_in_box(vec3 eye, vec3 direction, vec3 low, vec3 high) {
+    float first = 0.0f;
+    float last = 1e30f;
+    for (int i = 0; i < 3; i = i + 1) {
+        float d = direction[i];
+        if (abs(d) < 1e-12f) {
+            if (eye[i] < low[i] || eye[i] > high[i]) {
+                return vec2(0.0f, 0.0f);
+            }
+        } else {
+            float a = (low[i] - eye[i]) / d;
+            float b = (high[i] - eye[i]) / d;
+            first = max(first, min(a, b));
+            last = min(last, max(a, b));
+        }
+    }
+    return vec2(first, last);
+}

@@ -33,8 +33,8 @@ namespace skybark::clouds {
 struct cumulus_options {
     std::uint64_t seed = 1;
     glm::vec3 base{0, 900, 0};       ///< m, the middle of the level base
-    float width = 1400;              ///< m, across the base
-    float thickness = 900;           ///< m, from the base to the highest top
+    float width = 1500;              ///< m, across the base
+    float thickness = 800;           ///< m, from the base to the highest top
     std::uint32_t particles = 12000; ///< as many are made
     float extinction = 0.045f;       ///< 1/m, inside
     float albedo = 1;                ///< of a single scattering
@@ -155,15 +155,14 @@ inline std::vector<cumulus_ball> cumulus_towers(cumulus_random& random, double h
                                                 double thickness) {
     std::vector<cumulus_ball> balls;
     const glm::dvec2 lean = random.in_disc() * 0.18;
-    const int towers = 5 + static_cast<int>(random.unit() * 3);
+    const int towers = 7 + static_cast<int>(random.unit() * 4);
     for (int t = 0; t < towers; ++t) {
-        const glm::dvec2 out = t == 0 ? random.in_disc() * 0.1 : random.in_disc() * 0.6;
+        const glm::dvec2 out = t == 0 ? random.in_disc() * 0.25 : random.in_disc() * 0.72;
         const double edge = glm::length(out);
         const double height =
-            t == 0 ? thickness
-                   : thickness * (1 - 0.75 * std::pow(edge, 1.3)) * random.between(0.6, 0.92);
+            t == 0 ? thickness : thickness * (1 - 0.55 * edge * edge) * random.between(0.5, 0.95);
         const double wide =
-            std::min(half * (t == 0 ? 0.42 : random.between(0.24, 0.36)), height * 0.48);
+            std::min(half * (t == 0 ? 0.36 : random.between(0.2, 0.32)), height * 0.48);
         const double narrow = wide * random.between(0.55, 0.8);
         const double lowest = wide * 0.35;
         const double highest = std::max(lowest, height - narrow);
@@ -204,15 +203,15 @@ inline bool cumulus_buried(std::span<const cumulus_ball> balls, glm::dvec3 centr
 inline std::vector<cumulus_ball> cumulus_pile(cumulus_random& random, double half, double thickness,
                                               double smallest) {
     std::vector<cumulus_ball> balls = cumulus_towers(random, half, thickness);
-    constexpr std::array<int, 3> on_each{13, 10, 8};
+    constexpr std::array<int, 3> on_each{9, 8, 7};
     std::size_t first = 0;
     for (const int puffs : on_each) {
         const std::size_t last = balls.size();
         for (std::size_t parent = first; parent < last; ++parent) {
             for (int i = 0; i < puffs; ++i) {
-                const double radius = balls[parent].radius * random.between(0.28, 0.5);
+                const double radius = balls[parent].radius * random.between(0.3, 0.52);
                 const glm::dvec3 centre =
-                    balls[parent].centre + random.direction(-0.2) * (0.86 * balls[parent].radius);
+                    balls[parent].centre + random.direction(-0.25) * (0.93 * balls[parent].radius);
                 if (radius >= smallest && centre.y + radius <= thickness &&
                     !cumulus_buried(std::span(balls).first(last), centre, radius)) {
                     balls.push_back({centre, radius, 1});
@@ -286,12 +285,12 @@ inline cumulus_places cumulus_inside(cumulus_random& random, std::span<const cum
 /// Radius of a particle at a depth below the surface: what reaches one sigma below it there grows
 /// with the depth, up to a limit. `finest` is the radius at the surface.
 inline double cumulus_radius(double finest, double depth) {
-    return std::min(finest + 0.8 * depth, 5 * finest);
+    return std::min(finest + depth, 6 * finest);
 }
 
-/// Particles are this part of their radius apart: 1.35 sigma, where Gaussians add up to what is
-/// level within 2 %.
-inline constexpr double cumulus_spacing = 0.45;
+/// Particles are this part of their radius apart: 1.8 sigma, where Gaussians on a cubic lattice add
+/// up to what is level within 1.5 %.
+inline constexpr double cumulus_spacing = 0.6;
 
 /// The radius at the surface with which `count` particles fill the volume.
 inline double cumulus_finest(const cumulus_places& places, std::uint32_t count, double largest) {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 bd54c8f28cc0ab99e2e6073a8f81d6434cec909711a7eeb47a2f111da2fc8d4d
+// sha256 34ef683659fd336afe7d468b9b089022400fb738b92e5eb51a8ec2abcaf1248c
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -114,6 +114,27 @@ inline vec4 behind_air(vec3 own, float alpha, float hidden, vec3 air) {
     float before = hidden * alpha;
     return vec4(own.x * seen + air.x * before, own.y * seen + air.y * before,
                 own.z * seen + air.z * before, alpha);
+}
+
+// Where a ray from `eye` along the unit `direction` is inside a box: from x to y metres before the
+// eye; nowhere if y <= x.
+inline vec2 ray_in_box(vec3 eye, vec3 direction, vec3 low, vec3 high) {
+    float first = 0.0f;
+    float last = 1e30f;
+    for (int i = 0; i < 3; i = i + 1) {
+        float d = direction[i];
+        if (abs(d) < 1e-12f) {
+            if (eye[i] < low[i] || eye[i] > high[i]) {
+                return vec2(0.0f, 0.0f);
+            }
+        } else {
+            float a = (low[i] - eye[i]) / d;
+            float b = (high[i] - eye[i]) / d;
+            first = max(first, min(a, b));
+            last = min(last, max(a, b));
+        }
+    }
+    return vec2(first, last);
 }
 
 } // namespace skybark::shared

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f9b486234d49976413dae2451b96adce0fafa3d4fe5272f525aa460cce97019a
+// sha256 12f29f33c7ce6f86120641ba50c30d114424ba5772cf89d555a37ec84c4d43f2
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>
@@ -151,12 +151,12 @@ float one_minus_exp(float x)
     p = 1.0f - x * (1.0f / 2.0f) * p;
     return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
-float log_one_plus(float u)
+float log_of_sum(float sum, float less_one)
 {
     float twos = 0.0f;
-    float less = u;
-    if (u < -0.25f || u > 0.4f) {
-        int bits = floatBitsToInt(1.0f + u);
+    float less = less_one;
+    if (less_one < -0.25f || less_one > 0.4f) {
+        int bits = floatBitsToInt(max(sum, 1.2e-38f));
         int power = (bits - 0x3f3504f3) >> 23;
         less = intBitsToFloat(bits - power * 8388608) - 1.0f;
         twos = float(power);
@@ -207,8 +207,9 @@ float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light,
         return 0.0f;
     }
     float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    if (light == 2u) {
-        return -log_one_plus(p.albedo * forward * tau - one_minus_exp(tau));
+    float on = p.albedo * forward * tau;
+    if (light == 2u && on > 0.0f) {
+        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
     }
     return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
@@ -328,6 +329,24 @@ vec4 behind_air(vec3 own, float alpha, float hidden, vec3 air) {
     float before = hidden * alpha;
     return vec4(own.x * seen + air.x * before, own.y * seen + air.y * before,
                 own.z * seen + air.z * before, alpha);
+}
+vec2 ray_in_box(vec3 eye, vec3 direction, vec3 low, vec3 high) {
+    float first = 0.0f;
+    float last = 1e30f;
+    for (int i = 0; i < 3; i = i + 1) {
+        float d = direction[i];
+        if (abs(d) < 1e-12f) {
+            if (eye[i] < low[i] || eye[i] > high[i]) {
+                return vec2(0.0f, 0.0f);
+            }
+        } else {
+            float a = (low[i] - eye[i]) / d;
+            float b = (high[i] - eye[i]) / d;
+            first = max(first, min(a, b));
+            last = min(last, max(a, b));
+        }
+    }
+    return vec2(first, last);
 }
 layout(std430, binding = 0) readonly buffer particles_buffer { vec4 particles[]; };
 layout(std430, binding = 1) writeonly buffer keys_buffer { uint keys[]; };
@@ -493,12 +512,12 @@ float one_minus_exp(float x)
     p = 1.0f - x * (1.0f / 2.0f) * p;
     return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
-float log_one_plus(float u)
+float log_of_sum(float sum, float less_one)
 {
     float twos = 0.0f;
-    float less = u;
-    if (u < -0.25f || u > 0.4f) {
-        int bits = floatBitsToInt(1.0f + u);
+    float less = less_one;
+    if (less_one < -0.25f || less_one > 0.4f) {
+        int bits = floatBitsToInt(max(sum, 1.2e-38f));
         int power = (bits - 0x3f3504f3) >> 23;
         less = intBitsToFloat(bits - power * 8388608) - 1.0f;
         twos = float(power);
@@ -549,8 +568,9 @@ float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light,
         return 0.0f;
     }
     float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    if (light == 2u) {
-        return -log_one_plus(p.albedo * forward * tau - one_minus_exp(tau));
+    float on = p.albedo * forward * tau;
+    if (light == 2u && on > 0.0f) {
+        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
     }
     return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
@@ -670,6 +690,24 @@ vec4 behind_air(vec3 own, float alpha, float hidden, vec3 air) {
     float before = hidden * alpha;
     return vec4(own.x * seen + air.x * before, own.y * seen + air.y * before,
                 own.z * seen + air.z * before, alpha);
+}
+vec2 ray_in_box(vec3 eye, vec3 direction, vec3 low, vec3 high) {
+    float first = 0.0f;
+    float last = 1e30f;
+    for (int i = 0; i < 3; i = i + 1) {
+        float d = direction[i];
+        if (abs(d) < 1e-12f) {
+            if (eye[i] < low[i] || eye[i] > high[i]) {
+                return vec2(0.0f, 0.0f);
+            }
+        } else {
+            float a = (low[i] - eye[i]) / d;
+            float b = (high[i] - eye[i]) / d;
+            first = max(first, min(a, b));
+            last = min(last, max(a, b));
+        }
+    }
+    return vec2(first, last);
 }
 layout(std430, binding = 0) readonly buffer particles_buffer { vec4 particles[]; };
 layout(std430, binding = 1) writeonly buffer keys_buffer { uint keys[]; };

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c6db638162773af740b92403cee5649360b2fde2ee18cd7525fa5bc3f657807c
+// sha256 cb9665dd0b6bdd2f3fd8a5904d1fdda588f8c4020302f9caded1914f12ea4ccf
 #pragma once
 
 #include <skybark/kernels/lit_puff.hpp>
@@ -269,12 +269,12 @@ float one_minus_exp(float x)
     p = 1.0f - x * (1.0f / 2.0f) * p;
     return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
-float log_one_plus(float u)
+float log_of_sum(float sum, float less_one)
 {
     float twos = 0.0f;
-    float less = u;
-    if (u < -0.25f || u > 0.4f) {
-        int bits = floatBitsToInt(1.0f + u);
+    float less = less_one;
+    if (less_one < -0.25f || less_one > 0.4f) {
+        int bits = floatBitsToInt(max(sum, 1.2e-38f));
         int power = (bits - 0x3f3504f3) >> 23;
         less = intBitsToFloat(bits - power * 8388608) - 1.0f;
         twos = float(power);
@@ -325,8 +325,9 @@ float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light,
         return 0.0f;
     }
     float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    if (light == 2u) {
-        return -log_one_plus(p.albedo * forward * tau - one_minus_exp(tau));
+    float on = p.albedo * forward * tau;
+    if (light == 2u && on > 0.0f) {
+        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
     }
     return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
@@ -446,6 +447,24 @@ vec4 behind_air(vec3 own, float alpha, float hidden, vec3 air) {
     float before = hidden * alpha;
     return vec4(own.x * seen + air.x * before, own.y * seen + air.y * before,
                 own.z * seen + air.z * before, alpha);
+}
+vec2 ray_in_box(vec3 eye, vec3 direction, vec3 low, vec3 high) {
+    float first = 0.0f;
+    float last = 1e30f;
+    for (int i = 0; i < 3; i = i + 1) {
+        float d = direction[i];
+        if (abs(d) < 1e-12f) {
+            if (eye[i] < low[i] || eye[i] > high[i]) {
+                return vec2(0.0f, 0.0f);
+            }
+        } else {
+            float a = (low[i] - eye[i]) / d;
+            float b = (high[i] - eye[i]) / d;
+            first = max(first, min(a, b));
+            last = min(last, max(a, b));
+        }
+    }
+    return vec2(first, last);
 }
 struct scene_record {
     mat4 to_clip;
@@ -848,12 +867,12 @@ float one_minus_exp(float x)
     p = 1.0f - x * (1.0f / 2.0f) * p;
     return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
-float log_one_plus(float u)
+float log_of_sum(float sum, float less_one)
 {
     float twos = 0.0f;
-    float less = u;
-    if (u < -0.25f || u > 0.4f) {
-        int bits = floatBitsToInt(1.0f + u);
+    float less = less_one;
+    if (less_one < -0.25f || less_one > 0.4f) {
+        int bits = floatBitsToInt(max(sum, 1.2e-38f));
         int power = (bits - 0x3f3504f3) >> 23;
         less = intBitsToFloat(bits - power * 8388608) - 1.0f;
         twos = float(power);
@@ -904,8 +923,9 @@ float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light,
         return 0.0f;
     }
     float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    if (light == 2u) {
-        return -log_one_plus(p.albedo * forward * tau - one_minus_exp(tau));
+    float on = p.albedo * forward * tau;
+    if (light == 2u && on > 0.0f) {
+        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
     }
     return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
@@ -1025,6 +1045,24 @@ vec4 behind_air(vec3 own, float alpha, float hidden, vec3 air) {
     float before = hidden * alpha;
     return vec4(own.x * seen + air.x * before, own.y * seen + air.y * before,
                 own.z * seen + air.z * before, alpha);
+}
+vec2 ray_in_box(vec3 eye, vec3 direction, vec3 low, vec3 high) {
+    float first = 0.0f;
+    float last = 1e30f;
+    for (int i = 0; i < 3; i = i + 1) {
+        float d = direction[i];
+        if (abs(d) < 1e-12f) {
+            if (eye[i] < low[i] || eye[i] > high[i]) {
+                return vec2(0.0f, 0.0f);
+            }
+        } else {
+            float a = (low[i] - eye[i]) / d;
+            float b = (high[i] - eye[i]) / d;
+            first = max(first, min(a, b));
+            last = min(last, max(a, b));
+        }
+    }
+    return vec2(first, last);
 }
 struct scene_record {
     mat4 to_clip;

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 255d8d51c9f3ccb1a659aea05085ba5f85b2d4eec90f071418a69ef2a71ca222
+// sha256 85f7823107fdf186d5604ef2ed22ebbd4370cc14f8a91e582ff1e4791e279421
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>

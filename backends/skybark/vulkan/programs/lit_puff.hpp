@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5f1aab99affa1fe32e4308c9b631421b086cdedb8b60fbb5d511a826960093d6
+// sha256 998d3fae49c532a07ecdd5c4ff61a03ec2400ad41c0f692d72c674a6149bfdb2
 #pragma once
 
 #include <skybark/kernels/lit_puff.hpp>
