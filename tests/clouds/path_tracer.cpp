@@ -291,9 +291,11 @@ TEST(path_tracer, slabs_lose_no_energy) {
     const auto all = clouds::trace_slab(8, 1, phase, 0.6, with_paths(20'000));
     EXPECT_NEAR(all->transmission.mean + all->reflection.mean, 1, 1e-12);
     EXPECT_EQ(all->absorption.mean, 0);
-    const auto some = clouds::trace_slab(8, 0.9, phase, 0.6, with_paths(50'000));
-    EXPECT_NEAR(some->transmission.mean + some->reflection.mean + some->absorption.mean, 1, 2e-3);
-    EXPECT_GT(some->absorption.mean, 0.1);
+    // Roulette keeps energy on average: each path ends with an error of 0.1 at most.
+    const auto some = clouds::trace_slab(8, 0.5, phase, 0.6, with_paths(100'000));
+    EXPECT_NEAR(some->transmission.mean + some->reflection.mean + some->absorption.mean, 1,
+                3 * 0.1 / std::sqrt(100'000.0));
+    EXPECT_GT(some->absorption.mean, 0.8);
     const auto none = clouds::trace_slab(8, 0, phase, 1, with_paths(1'000));
     EXPECT_NEAR(none->absorption.mean, 1 - std::exp(-8.0), 1e-12);
     EXPECT_EQ(none->reflection.mean, 0);
