@@ -1,0 +1,135 @@
+// The attenuation volume of a density grid, against line integrals in closed form.
+#include "../support/devices.hpp"
+
+#include <skybark/clouds/attenuation_volume.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <numbers>
+
+namespace {
+
+using namespace skybark;
+using namespace skybark::clouds;
+
+constexpr glm::uvec3 grid_size(48, 40, 56);
+const density_box where{{-2, -1, -3}, {2, 3, 3}, 0.8f, 1.0f};
+
+std::vector<float> densities(const std::function<double(glm::dvec3)>& density) {
+    std::vector<float> values;
+    const glm::dvec3 step = glm::dvec3(where.high - where.low) / glm::dvec3(grid_size);
+    for (std::uint32_t z = 0; z < grid_size.z; ++z) {
+        for (std::uint32_t y = 0; y < grid_size.y; ++y) {
+            for (std::uint32_t x = 0; x < grid_size.x; ++x) {
+                const glm::dvec3 at = glm::dvec3(where.low) + (glm::dvec3(x, y, z) + 0.5) * step;
+                values.push_back(static_cast<float>(density(at)));
+            }
+        }
+    }
+    return values;
+}
+
+/// The attenuation of `values` under a sun, and where it lies.
+template <class B>
+std::vector<float> lit(B& device, const std::vector<float>& values, const light_box& box,
+                       const attenuation_options& options) {
+    auto density =
+        device.create_volume({grid_size.x, grid_size.y, grid_size.z, volume_format::float32});
+    auto volume = attenuation_volume<B>::create(device, box.voxels, options);
+    if (!density || !volume || !volume->prepare_for_grids(device) ||
+        !device.upload(*density, std::as_bytes(std::span(values))) ||
+        !run(device, [&](auto& recorder) { volume->relight(recorder, *density, where, box); })) {
+        ADD_FAILURE() << "the grid was not lit";
+        return {};
+    }
+    std::vector<float> found(std::size_t{box.voxels.x} * box.voxels.y * box.voxels.z);
+    if (!device.download(volume->volume(), std::as_writable_bytes(std::span(found)))) {
+        ADD_FAILURE() << "no download";
+    }
+    return found;
+}
+
+light_box box_for(glm::vec3 sun, glm::uvec3 voxels) {
+    cloud_bounds bounds;
+    bounds.low = where.low;
+    bounds.high = where.high;
+    return *fit_light_box(bounds, sun, voxels);
+}
+
+glm::dvec3 middle_of(const light_grid& grid, glm::dvec3 cells) {
+    glm::dvec3 place(glm::vec3(grid.anchor));
+    const glm::vec4 rows[] = {grid.row_x, grid.row_y, grid.row_z};
+    for (int a = 0; a < 3; ++a) {
+        place += glm::normalize(glm::dvec3(glm::vec3(rows[a]))) *
+                 (double(grid.voxel[a]) * (cells[a] - double(rows[a].w)));
+    }
+    return place;
+}
+
+class grid_attenuation : public testing::TestWithParam<const char*> {};
+
+TEST_P(grid_attenuation, of_a_gaussian_is_an_error_function) {
+    support::with_device(GetParam(), [](auto& device) {
+        const glm::dvec3 centre(0, 1, 0);
+        const double sigma = 0.5;
+        const auto values = densities([&](glm::dvec3 p) {
+            return std::exp(-glm::dot(p - centre, p - centre) / (2 * sigma * sigma));
+        });
+        for (const glm::vec3 sun : {glm::vec3(0, 1, 0), glm::vec3(0.5f, 0.6f, -0.4f)}) {
+            const light_box box = box_for(sun, glm::uvec3(48));
+            attenuation_options options;
+            options.light = attenuation_light::extinction;
+            const auto found = lit(device, values, box, options);
+            ASSERT_EQ(found.size(), 48u * 48 * 48);
+            const glm::dvec3 towards = glm::normalize(glm::dvec3(sun));
+            double worst = 0;
+            for (std::uint32_t z = 0; z < 48; z += 3) {
+                for (std::uint32_t y = 0; y < 48; y += 3) {
+                    for (std::uint32_t x = 0; x < 48; x += 3) {
+                        const glm::dvec3 at = middle_of(box.grid, glm::dvec3(x, y, z) + 0.5);
+                        const double b = glm::dot(centre - at, towards);
+                        const glm::dvec3 across = centre - at - b * towards;
+                        const double exact =
+                            0.8 * sigma * std::sqrt(std::numbers::pi / 2) *
+                            std::exp(-glm::dot(across, across) / (2 * sigma * sigma)) *
+                            std::erfc(-b / (std::numbers::sqrt2 * sigma));
+                        worst =
+                            std::max(worst, std::abs(exact - double(found[(z * 48 + y) * 48 + x])));
+                    }
+                }
+            }
+            // Trilinear densities of step s see a Gaussian that is wider by s²/6 and less, the
+            // light's voxels add h²/24: with s = 0.107 and h up to 0.2 of sigma 0.5, 1.5 % of the
+            // depth of 1.003 at most.
+            EXPECT_LE(worst, 0.015);
+        }
+    });
+}
+
+TEST_P(grid_attenuation, of_an_even_box_grows_with_depth) {
+    support::with_device(GetParam(), [](auto& device) {
+        const auto values = densities([](glm::dvec3) { return 0.5; });
+        const light_box box = box_for({0, 1, 0}, glm::uvec3(32));
+        attenuation_options options;
+        options.light = attenuation_light::continuum;
+        options.forward = 0.25f;
+        const auto found = lit(device, values, box, options);
+        ASSERT_EQ(found.size(), 32u * 32 * 32);
+        for (std::uint32_t y = 0; y < 32; ++y) {
+            const glm::dvec3 at = middle_of(box.grid, glm::dvec3(16, y, 16) + 0.5);
+            const double depth = std::clamp(3 - at.y, 0.0, 4.0) * 0.5 * 0.8 * 0.75;
+            // The voxel that holds an edge is half in, half out, to the samples in it.
+            const double voxel = double(box.grid.voxel.y) * 0.5 * 0.8 * 0.75;
+            EXPECT_NEAR(double(found[(16 * 32 + y) * 32 + 16]), depth, 0.5 * voxel + 1e-5) << y;
+        }
+        EXPECT_EQ(found[(16 * 32 + 31) * 32 + 16], 0.0f);
+        EXPECT_EQ(found[16 * 32 * 32], 0.0f); // beside it
+    });
+}
+
+INSTANTIATE_TEST_SUITE_P(backends, grid_attenuation, testing::Values("cpu", "opengl", "vulkan"),
+                         [](const auto& backend) { return std::string(backend.param); });
+
+} // namespace
