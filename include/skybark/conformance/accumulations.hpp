@@ -4,6 +4,8 @@
 #include <skybark/conformance/volumes.hpp>
 #include <skybark/kernels/probe_slabs.hpp>
 
+#include <glm/common.hpp>
+
 namespace skybark::conformance {
 
 /// How an accumulation reaches its voxels.
@@ -68,7 +70,7 @@ void expect_sums(const context<B>& c, const typename B::volume& volume,
     }
 }
 
-/// Boxes of all sizes, some of them empty, around and inside the volume.
+/// Boxes of all sizes, some of them empty, around and inside the volume; the first one is in it.
 template <backend B>
 [[nodiscard]] std::vector<kernels::probe_box> random_boxes(context<B>& c, glm::ivec3 size,
                                                            std::size_t count) {
@@ -83,6 +85,9 @@ template <backend B>
         }
         box.low.w = between(-50, 50);
         box.high.w = between(-3, 3);
+    }
+    if (count != 0) {
+        boxes[0] = {{0, 0, 0, 17}, glm::ivec4(glm::min(size, glm::ivec3(4)), 2)};
     }
     return boxes;
 }
