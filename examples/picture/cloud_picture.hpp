@@ -69,7 +69,7 @@ class cloud_painter {
     /// For clouds of up to `most_particles`.
     [[nodiscard]] static result<cloud_painter>
     create(B& device, const cloud_picture_options& options, std::uint32_t most_particles) {
-        auto puffs = cloud_billboards<B>::create(device, most_particles);
+        auto puffs = clouds::cloud_billboards<B>::create(device, most_particles);
         if (!puffs) {
             return failure(puffs.error());
         }
@@ -98,7 +98,7 @@ class cloud_painter {
     /// Appends the drawing of a picture: the sky, the ground at the height `ground` (m), its shadow
     /// by light.sun, and `count` particles. The lighting's `air` is that of the options.
     void record(typename B::recorder& to, const kernels::scene_record& scene,
-                const buffer_view<B>& particles, std::uint32_t count, cloud_light_sources<B> light,
+                const buffer_view<B>& particles, std::uint32_t count, clouds::cloud_light_sources<B> light,
                 float ground) const {
         to.upload(view<B>(*scene_), std::as_bytes(std::span(&scene, 1)));
         light.lighting.air = options_.air;
@@ -140,11 +140,11 @@ class cloud_painter {
     [[nodiscard]] const cloud_picture_options& options() const { return options_; }
 
   private:
-    cloud_painter(const cloud_picture_options& options, cloud_billboards<B>&& puffs)
+    cloud_painter(const cloud_picture_options& options, clouds::cloud_billboards<B>&& puffs)
         : options_(options), puffs_(std::move(puffs)) {}
 
     cloud_picture_options options_;
-    cloud_billboards<B> puffs_;
+    clouds::cloud_billboards<B> puffs_;
     std::vector<typename B::image> images_; // samples, their depth, the picture
     std::optional<typename B::buffer> scene_;
 };

@@ -55,7 +55,7 @@ float puff_depth(float tau, float rho2, float ahead, float radius, float sigmas)
     }
     float over = sigmas / radius;
     float whole = tau * exp_minus(0.5f * over * over * rho2);
-    return ahead > radius ? whole : whole * gaussian_above(-ahead * over);
+    return ahead * over > 5.0f ? whole : whole * gaussian_above(-ahead * over);
 }
 
 // How far before the middle of a Gaussian of this depth, in sigmas, the light that leaves it towards

@@ -21,7 +21,7 @@
 #include <optional>
 #include <string>
 
-namespace skybark {
+namespace skybark::clouds {
 
 using kernels::cloud_lighting;
 
@@ -30,7 +30,7 @@ using kernels::cloud_lighting;
 /// S = a τ P I as the document does (which makes thick particles too bright).
 [[nodiscard]] inline cloud_lighting single_scattering(const attenuation_options& options,
                                                       const light_box& box,
-                                                      const clouds::phase_function& phase,
+                                                      const phase_function& phase,
                                                       bool as_document = false) {
     cloud_lighting lighting{};
     lighting.sun_grid = box.grid;
@@ -56,7 +56,7 @@ inline void add_octaves(cloud_lighting& lighting, std::uint32_t count, float lig
 /// of `extinction` or `continuum` light. What a cloud absorbs is left out of it, and what comes in
 /// from the sides: two streams go up and down in every column as in an endless layer.
 inline void add_sky(cloud_lighting& lighting, const attenuation_options& options,
-                    const light_box& box, const clouds::phase_function& phase) {
+                    const light_box& box, const phase_function& phase) {
     const double g = phase.mean_cosine();
     const double kept =
         options.light == attenuation_light::continuum ? 1 - double{options.forward} : 1.0;
@@ -153,4 +153,4 @@ class cloud_billboards {
     std::optional<typename B::buffer> lighting_;
 };
 
-} // namespace skybark
+} // namespace skybark::clouds

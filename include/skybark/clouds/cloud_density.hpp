@@ -7,7 +7,7 @@
 #include <skybark/clouds/cloud_billboards.hpp>
 #include <skybark/kernels/lit_grid.hpp>
 
-namespace skybark {
+namespace skybark::clouds {
 
 template <volume_backend B>
 requires draws_volumes<B, kernels::lit_grid>
@@ -56,4 +56,4 @@ class cloud_density {
     std::optional<typename B::buffer> lighting_; // there after create
 };
 
-} // namespace skybark
+} // namespace skybark::clouds

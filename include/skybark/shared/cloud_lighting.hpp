@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 34ef683659fd336afe7d468b9b089022400fb738b92e5eb51a8ec2abcaf1248c
+// sha256 923b31078a5306f5e89ae066f2e58cfaf3ff4338c8b4e15d6cfc974d6d463b11
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -63,7 +63,7 @@ inline float puff_depth(float tau, float rho2, float ahead, float radius, float 
     }
     float over = sigmas / radius;
     float whole = tau * exp_minus(0.5f * over * over * rho2);
-    return ahead > radius ? whole : whole * gaussian_above(-ahead * over);
+    return ahead * over > 5.0f ? whole : whole * gaussian_above(-ahead * over);
 }
 
 // How far before the middle of a Gaussian of this depth, in sigmas, the light that leaves it towards

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 12f29f33c7ce6f86120641ba50c30d114424ba5772cf89d555a37ec84c4d43f2
+// sha256 b1d827b99b29a1c31ec9a195d5dff87f3c56f61426897fd0b4762793565b1252
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>
@@ -295,7 +295,7 @@ float puff_depth(float tau, float rho2, float ahead, float radius, float sigmas)
     }
     float over = sigmas / radius;
     float whole = tau * exp_minus(0.5f * over * over * rho2);
-    return ahead > radius ? whole : whole * gaussian_above(-ahead * over);
+    return ahead * over > 5.0f ? whole : whole * gaussian_above(-ahead * over);
 }
 float puff_front(float tau) {
     float t = min(tau, 40.0f);
@@ -656,7 +656,7 @@ float puff_depth(float tau, float rho2, float ahead, float radius, float sigmas)
     }
     float over = sigmas / radius;
     float whole = tau * exp_minus(0.5f * over * over * rho2);
-    return ahead > radius ? whole : whole * gaussian_above(-ahead * over);
+    return ahead * over > 5.0f ? whole : whole * gaussian_above(-ahead * over);
 }
 float puff_front(float tau) {
     float t = min(tau, 40.0f);

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ba987b1daab4806b4a76edef7ea46a6b03555025f743d257412745b695e03a50
+// sha256 c1f457099c5ecfac3d53a71e10d17c4215177752f27c9d4e3bffaa62ab17304c
 #pragma once
 
 #include <skybark/kernels/lit_grid.hpp>
@@ -415,7 +415,7 @@ float puff_depth(float tau, float rho2, float ahead, float radius, float sigmas)
     }
     float over = sigmas / radius;
     float whole = tau * exp_minus(0.5f * over * over * rho2);
-    return ahead > radius ? whole : whole * gaussian_above(-ahead * over);
+    return ahead * over > 5.0f ? whole : whole * gaussian_above(-ahead * over);
 }
 float puff_front(float tau) {
     float t = min(tau, 40.0f);
@@ -995,7 +995,7 @@ float puff_depth(float tau, float rho2, float ahead, float radius, float sigmas)
     }
     float over = sigmas / radius;
     float whole = tau * exp_minus(0.5f * over * over * rho2);
-    return ahead > radius ? whole : whole * gaussian_above(-ahead * over);
+    return ahead * over > 5.0f ? whole : whole * gaussian_above(-ahead * over);
 }
 float puff_front(float tau) {
     float t = min(tau, 40.0f);

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 cb9665dd0b6bdd2f3fd8a5904d1fdda588f8c4020302f9caded1914f12ea4ccf
+// sha256 00be118d29cdbd0822246128ccdaa3c72b9dde4714d3418f335c253298430ba7
 #pragma once
 
 #include <skybark/kernels/lit_puff.hpp>
@@ -413,7 +413,7 @@ float puff_depth(float tau, float rho2, float ahead, float radius, float sigmas)
     }
     float over = sigmas / radius;
     float whole = tau * exp_minus(0.5f * over * over * rho2);
-    return ahead > radius ? whole : whole * gaussian_above(-ahead * over);
+    return ahead * over > 5.0f ? whole : whole * gaussian_above(-ahead * over);
 }
 float puff_front(float tau) {
     float t = min(tau, 40.0f);
@@ -1011,7 +1011,7 @@ float puff_depth(float tau, float rho2, float ahead, float radius, float sigmas)
     }
     float over = sigmas / radius;
     float whole = tau * exp_minus(0.5f * over * over * rho2);
-    return ahead > radius ? whole : whole * gaussian_above(-ahead * over);
+    return ahead * over > 5.0f ? whole : whole * gaussian_above(-ahead * over);
 }
 float puff_front(float tau) {
     float t = min(tau, 40.0f);

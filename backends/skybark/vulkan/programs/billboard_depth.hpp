@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 85f7823107fdf186d5604ef2ed22ebbd4370cc14f8a91e582ff1e4791e279421
+// sha256 d24f4a3c05035efdbc00514652b6c9c42340ddeb543199e0af72f40c3da1a4d4
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c93bd007ca407058525183f170c5f2bc493b27088e0944a00a4bd2b40909a685
+// sha256 eb56f695ee34fc289dbb27a409ad4958ceb7987fcb5211d01c1ce309ea5b6b1f
 #pragma once
 
 #include <skybark/kernels/lit_grid.hpp>
