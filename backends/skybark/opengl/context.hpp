@@ -44,6 +44,23 @@ struct shader_stage {
     std::string_view text;
 };
 
+/// What drawn accumulations draw into: floats, two to a voxel. Kept until another size is needed.
+struct sum_targets {
+    gl::handle tiles = 0;  ///< a 2-D texture, all layers side by side
+    gl::handle layers = 0; ///< a 3-D texture
+    glm::uvec2 tiles_size{0};
+    glm::uvec3 layers_size{0};
+    gl::handle tiles_frame = 0;  ///< the framebuffer of `tiles`
+    gl::handle layers_frame = 0; ///< of all layers of `layers` at once
+    gl::handle layer_frame = 0;  ///< of one of them
+};
+
+/// A buffer that grows where it must, and is kept.
+struct scratch_buffer {
+    gl::handle name = 0;
+    std::uint64_t bytes = 0;
+};
+
 /// What the patterns share. All of it lives as long as the context's device.
 struct shared_objects {
     gl::handle vertex_array = 0;
@@ -53,7 +70,11 @@ struct shared_objects {
     gl::handle scratch = 0;   ///< 16 bytes, bound in the place of an empty view
     gl::handle arguments = 0; ///< of an indirect call, 32 bytes
     gl::handle parameters = 0;
-    gl::handle ranges = 0;
+    scratch_buffer ranges;
+    scratch_buffer scan_sums;
+    scratch_buffer sort_pairs;
+    scratch_buffer sort_counts;
+    sum_targets sums;
     gl::handle written = 0;               ///< a query
     gl::handle generated = 0;             ///< a query
     std::array<gl::handle, 4> samplers{}; ///< 2 · linear + repeat
@@ -116,6 +137,12 @@ class context {
                                                std::span<const std::byte> kernel);
     /// Puts ranges where levels.comp reads them.
     [[nodiscard]] result<bound_range> write_ranges(std::span<const range> ranges);
+    /// Makes a buffer at least so large; its content is undefined afterwards.
+    [[nodiscard]] result<void> grow(scratch_buffer& buffer, std::uint64_t bytes);
+
+    /// Makes `objects.sums.tiles`, or `layers`, exactly so large.
+    [[nodiscard]] result<void> size_tiles(const glm::uvec2& size);
+    [[nodiscard]] result<void> size_layers(const glm::uvec3& size);
 
     /// What `draw` draws into. Attachments stay until they change, are destroyed, or `detach`.
     void attach(gl::handle color, gl::handle depth);
@@ -123,6 +150,7 @@ class context {
 
     gl::functions gl;
     device_limits limits;
+    std::uint32_t max_layers = 0; ///< of a framebuffer
     device_traffic traffic;
     shared_objects objects;
     std::string renderer;
@@ -149,7 +177,6 @@ class context {
 
     description description_;
     std::vector<program_entry> programs_;
-    std::uint64_t ranges_bytes_ = 0;
     std::uint32_t parameter_stride_ = 256;
     std::uint32_t next_parameters_ = 0;
     gl::handle attached_color_ = 0;
@@ -239,6 +266,8 @@ inline result<void> context::require_limits() {
         {gl::max_geometry_shader_storage_blocks, 8, "storage buffers in a geometry shader"},
         {gl::max_vertex_shader_storage_blocks, 8, "storage buffers in a vertex shader"},
         {gl::max_fragment_shader_storage_blocks, 8, "storage buffers in a fragment shader"},
+        {gl::max_image_units, 8, "image units"},
+        {gl::max_fragment_image_uniforms, 4, "images in a fragment shader"},
     };
     for (const requirement& each : needed) {
         if (const int has = integer(each.name); has < each.least) {
@@ -256,6 +285,13 @@ inline result<void> context::require_limits() {
     // 2³¹ elements are 2²⁵ workgroups, whose numbers do not wrap in 32 bits.
     limits.max_elements = std::uint64_t{1} << 31;
     limits.max_image_size = static_cast<std::uint32_t>(integer(gl::max_texture_size));
+    // More than 65,535 groups are not dispatched, and a volume's rows are groups.
+    limits.max_volume_size =
+        static_cast<std::uint32_t>(std::min(integer(gl::max_3d_texture_size), 65535));
+    limits.accumulate_routes =
+        route_bit(accumulate_route::direct) | route_bit(accumulate_route::tiles_copied) |
+        route_bit(accumulate_route::tiles_drawn) | route_bit(accumulate_route::layers);
+    max_layers = static_cast<std::uint32_t>(integer(gl::max_framebuffer_layers));
     parameter_stride_ = static_cast<std::uint32_t>(
         std::max(int{parameter_bytes}, integer(gl::uniform_buffer_offset_alignment)));
     const auto* name = reinterpret_cast<const char*>(gl.get_string(gl::renderer));
@@ -272,6 +308,9 @@ inline void context::create_objects() {
     gl.named_framebuffer_parameter(objects.nothing, gl::framebuffer_default_width, 1);
     gl.named_framebuffer_parameter(objects.nothing, gl::framebuffer_default_height, 1);
     gl.create_framebuffers(1, &objects.target);
+    gl.create_framebuffers(1, &objects.sums.tiles_frame);
+    gl.create_framebuffers(1, &objects.sums.layers_frame);
+    gl.create_framebuffers(1, &objects.sums.layer_frame);
     gl.create_queries(gl::transform_feedback_primitives_written, 1, &objects.written);
     gl.create_queries(gl::primitives_generated, 1, &objects.generated);
     const auto storage = [this](gl::handle& buffer, std::uint64_t bytes) {
@@ -291,6 +330,7 @@ inline void context::create_objects() {
         gl.sampler_parameter(sampler, gl::texture_mag_filter, filter);
         gl.sampler_parameter(sampler, gl::texture_wrap_s, wrap);
         gl.sampler_parameter(sampler, gl::texture_wrap_t, wrap);
+        gl.sampler_parameter(sampler, gl::texture_wrap_r, wrap);
     }
 }
 
@@ -302,13 +342,19 @@ inline context::~context() {
     for (const program_entry& entry : programs_) {
         gl.delete_program(entry.program);
     }
-    const gl::handle buffers[] = {objects.scratch, objects.arguments, objects.parameters,
-                                  objects.ranges};
+    const sum_targets& sums = objects.sums;
+    const gl::handle buffers[] = {objects.scratch,         objects.arguments,
+                                  objects.parameters,      objects.ranges.name,
+                                  objects.scan_sums.name,  objects.sort_pairs.name,
+                                  objects.sort_counts.name};
     const gl::handle queries[] = {objects.written, objects.generated};
-    const gl::handle framebuffers[] = {objects.nothing, objects.target};
-    gl.delete_buffers(4, buffers);
+    const gl::handle framebuffers[] = {objects.nothing, objects.target, sums.tiles_frame,
+                                       sums.layers_frame, sums.layer_frame};
+    const gl::handle textures[] = {sums.tiles, sums.layers};
+    gl.delete_buffers(7, buffers);
     gl.delete_queries(2, queries);
-    gl.delete_framebuffers(2, framebuffers);
+    gl.delete_framebuffers(5, framebuffers);
+    gl.delete_textures(2, textures);
     gl.delete_samplers(static_cast<int>(objects.samplers.size()), objects.samplers.data());
     gl.delete_transform_feedbacks(1, &objects.feedback);
     gl.delete_vertex_arrays(1, &objects.vertex_array);
@@ -484,21 +530,61 @@ inline bound_range context::write_parameters(const std::array<std::uint32_t, 4>&
     return {objects.parameters, offset, static_cast<std::ptrdiff_t>(used)};
 }
 
+inline result<void> context::grow(scratch_buffer& buffer, std::uint64_t bytes) {
+    if (bytes <= buffer.bytes) {
+        return {};
+    }
+    const std::uint64_t roomy = std::max<std::uint64_t>(bytes + bytes / 2, 4096);
+    auto name = create_buffer(roomy);
+    if (!name) {
+        return failure(name.error());
+    }
+    gl.delete_buffers(1, &buffer.name);
+    buffer = {*name, roomy};
+    return {};
+}
+
 inline result<bound_range> context::write_ranges(std::span<const range> ranges) {
-    if (ranges.size_bytes() > ranges_bytes_) {
-        const std::uint64_t bytes = std::max<std::uint64_t>(ranges.size_bytes() * 2, 4096);
-        auto buffer = create_buffer(bytes);
-        if (!buffer) {
-            return failure(buffer.error());
-        }
-        gl.delete_buffers(1, &objects.ranges);
-        objects.ranges = *buffer;
-        ranges_bytes_ = bytes;
+    if (auto done = grow(objects.ranges, ranges.size_bytes()); !done) {
+        return failure(done.error());
     }
     const auto size = static_cast<std::ptrdiff_t>(ranges.size_bytes());
-    gl.named_buffer_sub_data(objects.ranges, 0, size, ranges.data());
+    gl.named_buffer_sub_data(objects.ranges.name, 0, size, ranges.data());
     traffic.up += ranges.size_bytes();
-    return bound_range{objects.ranges, 0, size};
+    return bound_range{objects.ranges.name, 0, size};
+}
+
+inline result<void> context::size_tiles(const glm::uvec2& size) {
+    sum_targets& sums = objects.sums;
+    if (sums.tiles_size == size) {
+        return {};
+    }
+    gl.delete_textures(1, &sums.tiles);
+    gl.create_textures(gl::texture_2d, 1, &sums.tiles);
+    gl.texture_storage_2d(sums.tiles, 1, gl::rg32f, static_cast<int>(size.x),
+                          static_cast<int>(size.y));
+    gl.named_framebuffer_texture(sums.tiles_frame, gl::color_attachment0, sums.tiles, 0);
+    auto done = check("making tiles of " + std::to_string(size.x) + " x " + std::to_string(size.y) +
+                      " pixels to accumulate in");
+    sums.tiles_size = done ? size : glm::uvec2(0);
+    return done;
+}
+
+inline result<void> context::size_layers(const glm::uvec3& size) {
+    sum_targets& sums = objects.sums;
+    if (sums.layers_size == size) {
+        return {};
+    }
+    gl.delete_textures(1, &sums.layers);
+    gl.create_textures(gl::texture_3d, 1, &sums.layers);
+    gl.texture_storage_3d(sums.layers, 1, gl::rg32f, static_cast<int>(size.x),
+                          static_cast<int>(size.y), static_cast<int>(size.z));
+    gl.named_framebuffer_texture(sums.layers_frame, gl::color_attachment0, sums.layers, 0);
+    auto done =
+        check("making layers of " + std::to_string(size.x) + " x " + std::to_string(size.y) +
+              " x " + std::to_string(size.z) + " voxels to accumulate in");
+    sums.layers_size = done ? size : glm::uvec3(0);
+    return done;
 }
 
 inline void context::attach(gl::handle color, gl::handle depth) {

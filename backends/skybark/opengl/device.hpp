@@ -9,8 +9,9 @@
 //    TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN is active, `expand` fails with error_code::unavailable;
 //  - conditional rendering must not be active: OpenGL does not tell, and would drop our draws.
 //
-// Buffers are OpenGL's, images are its 2-D textures, and both can be wrapped around the caller's.
-// `expand` always goes through a geometry shader and transform feedback, `expand_rings` likewise.
+// Buffers are OpenGL's, images are its 2-D textures, volumes its 3-D ones, and all three can be
+// wrapped around the caller's. `expand` always goes through a geometry shader and transform
+// feedback, `expand_rings` likewise.
 
 #include <skybark/opengl/recorder.hpp>
 
@@ -21,6 +22,7 @@ class device {
     using backend_tag = skybark::backend_tag;
     using buffer = opengl::buffer;
     using image = opengl::image;
+    using volume = opengl::volume;
     using recorder = opengl::recorder;
 
     /// Fails with error_code::unavailable where the context cannot do what is needed.
@@ -33,6 +35,7 @@ class device {
 
     [[nodiscard]] result<buffer> create_buffer(std::uint64_t bytes);
     [[nodiscard]] result<image> create_image(const image_description& description);
+    [[nodiscard]] result<volume> create_volume(const volume_description& description);
 
     /// The caller's buffer object of `bytes` bytes. It stays the caller's. To be uploaded to, it
     /// must have been made with GL_DYNAMIC_STORAGE_BIT, or by glBufferData.
@@ -43,6 +46,11 @@ class device {
     [[nodiscard]] image wrap_image(gl::handle name, const image_description& description) const {
         return {nullptr, name, description};
     }
+    /// The caller's GL_TEXTURE_3D of GL_R32I, GL_R32F or GL_R16F with this level 0. It stays the
+    /// caller's.
+    [[nodiscard]] volume wrap_volume(gl::handle name, const volume_description& description) const {
+        return {nullptr, name, description};
+    }
 
     [[nodiscard]] result<void> upload(const buffer& to, std::uint64_t offset,
                                       std::span<const std::byte> bytes);
@@ -50,6 +58,8 @@ class device {
                                         std::span<std::byte> bytes);
     [[nodiscard]] result<void> upload(const image& to, std::span<const std::byte> bytes);
     [[nodiscard]] result<void> download(const image& from, std::span<std::byte> bytes);
+    [[nodiscard]] result<void> upload(const volume& to, std::span<const std::byte> bytes);
+    [[nodiscard]] result<void> download(const volume& from, std::span<std::byte> bytes);
 
     [[nodiscard]] result<recorder> begin();
     [[nodiscard]] result<void> submit(recorder& recorded);
@@ -78,6 +88,16 @@ template <std::size_t N>
         ranges[i] = bound(views[i]);
     }
     return ranges;
+}
+
+template <std::size_t N>
+[[nodiscard]] std::array<gl::handle, N> names_of(const std::array<const volume*, N>& volumes) {
+    std::array<gl::handle, N> names{};
+    for (std::size_t i = 0; i < N; ++i) {
+        assert(volumes[i] != nullptr && "a kernel given too few volumes");
+        names[i] = volumes[i]->name();
+    }
+    return names;
 }
 
 /// A kernel's parameters as the bytes of its block: none where it has no members.
@@ -128,6 +148,33 @@ inline result<image> device::create_image(const image_description& description) 
     context_->gl.texture_storage_2d(name, 1, detail::format_of(format).internal,
                                     static_cast<int>(width), static_cast<int>(height));
     image made(context_.get(), name, description);
+    if (auto done = context_->check("making " + text); !done) {
+        return failure(done.error());
+    }
+    return made;
+}
+
+inline result<volume> device::create_volume(const volume_description& description) {
+    const auto [width, height, depth, format] = description;
+    const std::string text = "a volume of " + std::to_string(width) + " x " +
+                             std::to_string(height) + " x " + std::to_string(depth) +
+                             " voxels of " + std::to_string(bytes_per_voxel(format)) + " bytes";
+    const std::uint32_t most = context_->limits.max_volume_size;
+    if (width == 0 || height == 0 || depth == 0 || width > most || height > most || depth > most) {
+        return fail(error_code::out_of_memory, "The opengl backend cannot make " + text +
+                                                   "; each side must be 1 to " +
+                                                   std::to_string(most) + ".");
+    }
+    if (auto entered = context_->enter(); !entered) {
+        return failure(entered.error());
+    }
+    context_->forget_errors();
+    gl::handle name = 0;
+    context_->gl.create_textures(gl::texture_3d, 1, &name);
+    context_->gl.texture_storage_3d(name, 1, detail::format_of(format).internal,
+                                    static_cast<int>(width), static_cast<int>(height),
+                                    static_cast<int>(depth));
+    volume made(context_.get(), name, description);
     if (auto done = context_->check("making " + text); !done) {
         return failure(done.error());
     }
@@ -195,6 +242,51 @@ inline result<void> device::download(const image& from, std::span<std::byte> byt
     }
     context_->traffic.down += bytes.size();
     return context_->check("downloading from an image");
+}
+
+inline result<void> device::upload(const volume& to, std::span<const std::byte> bytes) {
+    const volume_description what = to.description();
+    assert(bytes.size() == what.size_bytes() && "an upload of another size than the volume's");
+    if (auto entered = context_->enter(); !entered) {
+        return entered;
+    }
+    context_->forget_errors();
+    const detail::voxel_format format = detail::format_of(what.format);
+    {
+        const detail::saved_pixel_store packed(context_->gl, true);
+        context_->gl.texture_sub_image_3d(
+            to.name(), 0, 0, 0, 0, static_cast<int>(what.width), static_cast<int>(what.height),
+            static_cast<int>(what.depth), format.format, format.type, bytes.data());
+    }
+    context_->traffic.up += bytes.size();
+    return context_->check("uploading to a volume");
+}
+
+inline result<void> device::download(const volume& from, std::span<std::byte> bytes) {
+    const volume_description what = from.description();
+    assert(bytes.size() == what.size_bytes() && "a download of another size than the volume's");
+    if (auto entered = context_->enter(); !entered) {
+        return entered;
+    }
+    context_->forget_errors();
+    const detail::voxel_format format = detail::format_of(what.format);
+    // The size of what is copied is an int: a large volume comes in several runs of layers.
+    const std::uint64_t layer = what.size_bytes() / what.depth;
+    const auto run =
+        static_cast<std::uint32_t>(std::clamp<std::uint64_t>(0x7fffffff / layer, 1, what.depth));
+    {
+        const detail::saved_pixel_store packed(context_->gl, false);
+        for (std::uint32_t z = 0; z < what.depth; z += run) {
+            const std::uint32_t layers = std::min(run, what.depth - z);
+            context_->gl.get_texture_sub_image(
+                from.name(), 0, 0, 0, static_cast<int>(z), static_cast<int>(what.width),
+                static_cast<int>(what.height), static_cast<int>(layers), format.format, format.type,
+                static_cast<int>(std::min<std::uint64_t>(layer * layers, 0x7fffffff)),
+                bytes.data() + z * layer);
+        }
+    }
+    context_->traffic.down += bytes.size();
+    return context_->check("downloading from a volume");
 }
 
 inline result<recorder> device::begin() {
@@ -334,13 +426,13 @@ void recorder::expand_rings(const K& kernel, const bindings<device, K>& buffers,
 }
 
 template <draw_kernel K>
-void recorder::draw(const K& kernel, const bindings<device, K>& buffers,
-                    const image_bindings<device, K>& images, const draw_geometry<device>& geometry,
-                    const draw_target<device>& target, const draw_state& state) {
-    static_assert(K::images <= detail::max_kernel_images, "a kernel reads at most eight images");
+void recorder::draw_kernel_call(const K&, const detail::kernel_call& kernel,
+                                const image_bindings<device, K>& images,
+                                const draw_geometry<device>& geometry,
+                                const draw_target<device>& target, const draw_state& state) {
+    static_assert(K::images <= max_kernel_images, "a kernel reads at most eight images");
     assert((target.color != nullptr || target.depth != nullptr) && "a draw without a target");
     attempt([&] {
-        const auto ranges = detail::bound(buffers);
         std::array<detail::image_binding, K::images> textures;
         for (std::size_t i = 0; i < textures.size(); ++i) {
             assert(images[i].image != nullptr && "a kernel given too few images");
@@ -365,7 +457,126 @@ void recorder::draw(const K& kernel, const bindings<device, K>& buffers,
         call.clear_color = target.clear_color;
         call.clear_depth = target.clear_depth;
         call.state = state;
-        return detail::draw(*context_, {detail::bytes_of(kernel), ranges}, call);
+        return detail::draw(*context_, kernel, call);
+    });
+}
+
+template <draw_kernel K>
+void recorder::draw(const K& kernel, const bindings<device, K>& buffers,
+                    const image_bindings<device, K>& images, const draw_geometry<device>& geometry,
+                    const draw_target<device>& target, const draw_state& state) {
+    static_assert(!names_volumes<K>, "a kernel that names volumes is given them");
+    const auto ranges = detail::bound(buffers);
+    draw_kernel_call(kernel, {detail::bytes_of(kernel), ranges}, images, geometry, target, state);
+}
+
+template <draw_kernel K>
+void recorder::draw(const K& kernel, const bindings<device, K>& buffers,
+                    const image_bindings<device, K>& images,
+                    const volume_bindings<device, K>& volumes,
+                    const draw_geometry<device>& geometry, const draw_target<device>& target,
+                    const draw_state& state) {
+    const auto ranges = detail::bound(buffers);
+    const auto read = detail::names_of(volumes.read);
+    draw_kernel_call(kernel, {detail::bytes_of(kernel), ranges, read, {}}, images, geometry, target,
+                     state);
+}
+
+// ---- words --------------------------------------------------------------------------------------
+
+inline void recorder::scan(const buffer_view<device>& words, const buffer_view<device>& total) {
+    assert(total.size >= 4 && "no room for the sum of all words");
+    attempt(
+        [&] { return detail::scan_words(*context_, detail::bound(words), detail::bound(total)); });
+}
+
+inline void recorder::sort_pairs(const buffer_view<device>& keys, const buffer_view<device>& values,
+                                 std::uint32_t limit, const buffer_view<device>& length) {
+    attempt([&] {
+        const std::uint64_t room = std::min(keys.size, values.size) / 4;
+        return detail::sort_pairs(*context_, detail::bound(keys), detail::bound(values),
+                                  {0,
+                                   static_cast<std::uint32_t>(std::min<std::uint64_t>(room, limit)),
+                                   detail::bound(length)});
+    });
+}
+
+inline void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values) {
+    sort_pairs(keys, values, 0xffffffffu, {});
+}
+
+inline void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+                           const counted<device>& pairs) {
+    sort_pairs(keys, values, pairs.limit, pairs.count);
+}
+
+// ---- volumes ------------------------------------------------------------------------------------
+
+inline void recorder::scan(const volume& from, const volume& into, const volume_scan& how) {
+    attempt([&] {
+        return detail::scan_volume(*context_, {from.name(), from.description()},
+                                   {into.name(), into.description()}, how);
+    });
+}
+
+template <slab_kernel K>
+void recorder::accumulate_elements(const K& kernel, const bindings<device, K>& buffers,
+                                   const detail::element_range& elements,
+                                   const accumulation<device>& out) {
+    assert(out.into != nullptr && "an accumulation without a volume");
+    attempt([&] {
+        const auto ranges = detail::bound(buffers);
+        detail::slab_call call;
+        call.compute_text = program<K>::accumulate_comp;
+        call.vertex_text = program<K>::slabs_vert;
+        call.geometry_text = program<K>::slabs_geom;
+        call.fragment_text = program<K>::slabs_frag;
+        call.slabs = kernel.slabs();
+        call.into = {out.into->name(), out.into->description()};
+        call.clear = out.clear;
+        call.route = out.route;
+        call.policy = out.policy;
+        const detail::kernel_call given{detail::bytes_of(kernel), ranges};
+        return out.route == accumulate_route::direct
+                   ? detail::accumulate(*context_, given, elements, call)
+                   : detail::draw_sums(*context_, given, elements, call);
+    });
+}
+
+template <slab_kernel K>
+void recorder::accumulate(const K& kernel, const bindings<device, K>& buffers, range elements,
+                          const accumulation<device>& out) {
+    accumulate_elements(kernel, buffers, {elements.first, elements.count, {}}, out);
+}
+
+template <slab_kernel K>
+void recorder::accumulate(const K& kernel, const bindings<device, K>& buffers,
+                          const counted<device>& elements, const accumulation<device>& out) {
+    accumulate_elements(kernel, buffers, {0, elements.limit, detail::bound(elements.count)}, out);
+}
+
+template <grid_map_kernel K>
+void recorder::map(const K& kernel, const bindings<device, K>& buffers,
+                   const volume_bindings<device, K>& volumes, range elements) {
+    attempt([&] {
+        const auto ranges = detail::bound(buffers);
+        const auto read = detail::names_of(volumes.read);
+        const auto write = detail::names_of(volumes.write);
+        return detail::map(*context_, program<K>::map_comp,
+                           {detail::bytes_of(kernel), ranges, read, write},
+                           {elements.first, elements.count, {}});
+    });
+}
+
+template <voxel_kernel K>
+void recorder::map_voxels(const K& kernel, const bindings<device, K>& buffers,
+                          const volume_bindings<device, K>& volumes, const glm::uvec3& extent) {
+    attempt([&] {
+        const auto ranges = detail::bound(buffers);
+        const auto read = detail::names_of(volumes.read);
+        const auto write = detail::names_of(volumes.write);
+        return detail::map_voxels(*context_, program<K>::voxels_comp,
+                                  {detail::bytes_of(kernel), ranges, read, write}, extent);
     });
 }
 

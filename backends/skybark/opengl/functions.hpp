@@ -73,7 +73,7 @@ inline constexpr token viewport = 0x0BA2, depth_range = 0x0B70, scissor_test = 0
     cull_face = 0x0B44, cull_face_mode = 0x0B45, back = 0x0405, front_face = 0x0B46, ccw = 0x0901,
     polygon_mode = 0x0B40, front_and_back = 0x0408, fill = 0x1B02, polygon_offset_fill = 0x8037, polygon_smooth = 0x0B41,
     depth_clamp = 0x864F, clip_distance0 = 0x3000, clip_origin = 0x935C, clip_depth_mode = 0x935D,
-    upper_left = 0x8CA2, zero_to_one = 0x935F, provoking_vertex = 0x8E4F,
+    upper_left = 0x8CA2, lower_left = 0x8CA1, zero_to_one = 0x935F, provoking_vertex = 0x8E4F,
     last_vertex_convention = 0x8E4E, dither = 0x0BD0, framebuffer_srgb = 0x8DB9, sample_alpha_to_coverage = 0x809E, sample_alpha_to_one = 0x809F,
     sample_coverage = 0x80A0, sample_mask = 0x8E51, sample_shading = 0x8C36,
     primitive_restart = 0x8F9D, primitive_restart_fixed_index = 0x8D69;
@@ -83,6 +83,13 @@ inline constexpr token unpack_swap_bytes = 0x0CF0, unpack_lsb_first = 0x0CF1,
     pack_swap_bytes = 0x0D00, pack_lsb_first = 0x0D01, pack_row_length = 0x0D02,
     pack_skip_rows = 0x0D03, pack_skip_pixels = 0x0D04, pack_alignment = 0x0D05,
     pack_skip_images = 0x806B, pack_image_height = 0x806C;
+inline constexpr token texture_3d = 0x806F, texture_binding_3d = 0x806A, texture_wrap_r = 0x8072,
+    max_3d_texture_size = 0x8073, max_image_units = 0x8F38, max_fragment_image_uniforms = 0x90CE, max_framebuffer_layers = 0x9317, r32i = 0x8235, r32f = 0x822E,
+    r16f = 0x822D, rg32f = 0x8230, red = 0x1903, int32 = 0x1404, float16 = 0x140B,
+    read_framebuffer = 0x8CA8, read_framebuffer_binding = 0x8CAA;
+inline constexpr token image_binding_name = 0x8F3A, image_binding_level = 0x8F3B,
+    image_binding_layered = 0x8F3C, image_binding_layer = 0x8F3D, image_binding_access = 0x8F3E,
+    image_binding_format = 0x906E, read_only = 0x88B8, write_only = 0x88B9, read_write = 0x88BA;
 inline constexpr token all_barrier_bits = 0xFFFFFFFF;
 inline constexpr token debug_output = 0x92E0, debug_output_synchronous = 0x8242,
     debug_callback_user_param = 0x8245, debug_severity_high = 0x9146, debug_severity_medium = 0x9147,
@@ -142,6 +149,7 @@ using debug_procedure = void(SKYBARK_OPENGL_CALL*)(token source, token type, han
     X(void, get_program, "glGetProgramiv", (handle, token, int*)) \
     X(void, get_program_info_log, "glGetProgramInfoLog", (handle, int, int*, char*)) \
     X(void, use_program, "glUseProgram", (handle)) \
+    X(void, program_uniform_4i, "glProgramUniform4i", (handle, int, int, int, int, int)) \
     X(void, dispatch_compute, "glDispatchCompute", (handle, handle, handle)) \
     X(void, dispatch_compute_indirect, "glDispatchComputeIndirect", (std::ptrdiff_t)) \
     X(void, create_vertex_arrays, "glCreateVertexArrays", (int, handle*)) \
@@ -171,6 +179,7 @@ using debug_procedure = void(SKYBARK_OPENGL_CALL*)(token source, token type, han
     X(void, delete_framebuffers, "glDeleteFramebuffers", (int, const handle*)) \
     X(void, bind_framebuffer, "glBindFramebuffer", (token, handle)) \
     X(void, named_framebuffer_texture, "glNamedFramebufferTexture", (handle, token, handle, int)) \
+    X(void, named_framebuffer_texture_layer, "glNamedFramebufferTextureLayer", (handle, token, handle, int, int)) \
     X(void, named_framebuffer_parameter, "glNamedFramebufferParameteri", (handle, token, int)) \
     X(void, named_framebuffer_draw_buffer, "glNamedFramebufferDrawBuffer", (handle, token)) \
     X(void, clear_named_framebuffer, "glClearNamedFramebufferfv", (handle, token, int, const float*)) \
@@ -178,7 +187,13 @@ using debug_procedure = void(SKYBARK_OPENGL_CALL*)(token source, token type, han
     X(void, delete_textures, "glDeleteTextures", (int, const handle*)) \
     X(void, texture_storage_2d, "glTextureStorage2D", (handle, int, token, int, int)) \
     X(void, texture_sub_image_2d, "glTextureSubImage2D", (handle, int, int, int, int, int, token, token, const void*)) \
+    X(void, texture_storage_3d, "glTextureStorage3D", (handle, int, token, int, int, int)) \
+    X(void, texture_sub_image_3d, "glTextureSubImage3D", (handle, int, int, int, int, int, int, int, token, token, const void*)) \
+    X(void, copy_texture_sub_image_3d, "glCopyTextureSubImage3D", (handle, int, int, int, int, int, int, int, int)) \
+    X(void, clear_tex_image, "glClearTexImage", (handle, int, token, token, const void*)) \
+    X(void, bind_image_texture, "glBindImageTexture", (handle, handle, int, boolean, int, token, token)) \
     X(void, get_texture_image, "glGetTextureImage", (handle, int, token, token, int, void*)) \
+    X(void, get_texture_sub_image, "glGetTextureSubImage", (handle, int, int, int, int, int, int, int, token, token, int, void*)) \
     X(void, active_texture, "glActiveTexture", (token)) \
     X(void, bind_texture, "glBindTexture", (token, handle)) \
     X(void, create_samplers, "glCreateSamplers", (int, handle*)) \

@@ -7,6 +7,8 @@
 //   expand_rings  the same, as points
 //   draw          vertices pulled from storage buffers by their number
 //
+// Volumes have patterns of their own, in volume_patterns.hpp and drawn_sums.hpp.
+//
 // Each restores what it changed before it returns. A memory barrier ends each, so that whatever
 // comes next, here or in the caller's own code, sees what was written.
 
@@ -17,22 +19,28 @@
 
 namespace skybark::opengl::detail {
 
-/// A kernel as every pattern needs it.
+/// A kernel as every pattern needs it. Volumes are 3-D textures: those that it reads, and those of
+/// float32 that it writes.
 struct kernel_call {
     std::span<const std::byte> parameters;
     std::span<const bound_range> buffers;
+    std::span<const gl::handle> volumes = {};
+    std::span<const gl::handle> targets = {};
 };
 
 /// How many elements: `elements`, or, where there is a `length`, the count in it, at most as many.
 struct element_range {
     std::uint32_t first = 0;
     std::uint32_t count = 0;
-    bound_range length;
+    bound_range length = {};
 };
 
 inline constexpr std::uint32_t arguments_binding = 9;
 inline constexpr std::uint32_t length_binding = 10;
 inline constexpr std::uint32_t ranges_binding = 11;
+// Texture units and image units, as parameters.glsl has them.
+inline constexpr std::uint32_t volume_unit = 8;
+inline constexpr std::uint32_t target_unit = 0;
 
 [[nodiscard]] inline std::uint32_t kernel_mask(const kernel_call& call) {
     return (std::uint32_t{1} << call.buffers.size()) - 1;
@@ -51,6 +59,30 @@ inline void bind(context& c, gl::token target, std::uint32_t binding, const boun
 inline void bind_kernel(context& c, const kernel_call& call) {
     for (std::uint32_t i = 0; i < call.buffers.size(); ++i) {
         bind(c, gl::shader_storage_buffer, i, call.buffers[i]);
+    }
+}
+
+/// The texture units of a kernel's volumes and the image units of its targets.
+class saved_volumes {
+  public:
+    saved_volumes(const gl::functions& functions, const kernel_call& call)
+        : textures_(functions, deep_texture, volume_unit, call.volumes.size()),
+          targets_(functions, target_unit, call.targets.size()) {}
+
+  private:
+    saved_textures textures_;
+    saved_image_units targets_;
+};
+
+inline void bind_volumes(context& c, const kernel_call& call) {
+    for (std::uint32_t i = 0; i < call.volumes.size(); ++i) {
+        c.gl.active_texture(gl::texture0 + volume_unit + i);
+        c.gl.bind_texture(gl::texture_3d, call.volumes[i]);
+        c.gl.bind_sampler(volume_unit + i, c.objects.samplers[2]);
+    }
+    for (std::uint32_t i = 0; i < call.targets.size(); ++i) {
+        c.gl.bind_image_texture(target_unit + i, call.targets[i], 0, 1, 0, gl::write_only,
+                                gl::r32f);
     }
 }
 
@@ -93,12 +125,23 @@ struct indirect_call {
 
 // ---- map ----------------------------------------------------------------------------------------
 
-inline void dispatch_map(context& c, gl::handle program, const kernel_call& call, range elements) {
-    bind_parameters(c, {elements.first, elements.count, 0, 0}, call.parameters);
-    const std::uint32_t groups = elements.count / 64 + (elements.count % 64 != 0 ? 1 : 0);
+/// So many groups of the program; beyond 65,535 they go into the second dimension.
+inline void dispatch(context& c, gl::handle program, std::uint32_t groups) {
     const std::uint32_t columns = std::min(groups, 65535u);
     c.gl.use_program(program);
     c.gl.dispatch_compute(columns, (groups + columns - 1) / columns, 1);
+    c.gl.memory_barrier(gl::all_barrier_bits);
+}
+
+inline void dispatch_map(context& c, gl::handle program, const kernel_call& call, range elements) {
+    bind_parameters(c, {elements.first, elements.count, 0, 0}, call.parameters);
+    dispatch(c, program, elements.count / 64 + (elements.count % 64 != 0 ? 1 : 0));
+}
+
+/// As many groups as `objects.arguments` says.
+inline void dispatch_indirect(context& c, gl::handle program) {
+    c.gl.use_program(program);
+    c.gl.dispatch_compute_indirect(0);
     c.gl.memory_barrier(gl::all_barrier_bits);
 }
 
@@ -110,6 +153,8 @@ inline void dispatch_map(context& c, gl::handle program, const kernel_call& call
         return program ? result<void>{} : failure(program.error());
     }
     const saved_program saved(c.gl);
+    const saved_volumes saved_units(c.gl, call);
+    bind_volumes(c, call);
     if (elements.length.buffer == 0) {
         const saved_buffers saved_too(c.gl, kernel_mask(call) | mask_of(length_binding));
         bind_kernel(c, call);
@@ -129,9 +174,7 @@ inline void dispatch_map(context& c, gl::handle program, const kernel_call& call
     bind_kernel(c, call);
     bind_parameters(c, {elements.first, elements.count, 0, 1}, call.parameters);
     c.gl.bind_buffer(gl::dispatch_indirect_buffer, c.objects.arguments);
-    c.gl.use_program(*program);
-    c.gl.dispatch_compute_indirect(0);
-    c.gl.memory_barrier(gl::all_barrier_bits);
+    dispatch_indirect(c, *program);
     return {};
 }
 
@@ -504,7 +547,8 @@ inline void draw_triangles(context& c, const draw_call& call) {
                                             mask_of(arguments_binding));
     const saved_drawing saved_drawing_state(c.gl);
     const saved_raster saved_raster_state(c.gl);
-    const saved_textures saved_units(c.gl, call.images.size());
+    const saved_textures saved_images(c.gl, flat_texture, 0, call.images.size());
+    const saved_volumes saved_units(c.gl, kernel);
     if (call.length.buffer != 0) {
         if (auto done = write_arguments(c, draw_arguments(call), call.length); !done) {
             return done;
@@ -523,6 +567,7 @@ inline void draw_triangles(context& c, const draw_call& call) {
     bind_kernel(c, kernel);
     bind_parameters(c, {0, 0, 0, 0}, kernel.parameters);
     bind_images(c, call.images);
+    bind_volumes(c, kernel);
     c.gl.use_program(*program);
     draw_triangles(c, call);
     c.gl.vertex_array_element_buffer(c.objects.vertex_array, 0);

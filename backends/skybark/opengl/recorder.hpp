@@ -6,9 +6,13 @@
 // is kept and what follows it is ignored, until `device::submit` tells.
 
 #include <skybark/opengl/buffer.hpp>
+#include <skybark/opengl/drawn_sums.hpp>
 #include <skybark/opengl/image.hpp>
 #include <skybark/opengl/patterns.hpp>
 #include <skybark/opengl/program.hpp>
+#include <skybark/opengl/volume.hpp>
+#include <skybark/opengl/volume_patterns.hpp>
+#include <skybark/opengl/word_patterns.hpp>
 
 #include <cassert>
 
@@ -51,6 +55,37 @@ class recorder {
               const image_bindings<device, K>& images, const draw_geometry<device>& geometry,
               const draw_target<device>& target, const draw_state& state);
 
+    /// Running sums of words in place, the sum of all to the first word of `total`.
+    void scan(const buffer_view<device>& words, const buffer_view<device>& total);
+    /// As many pairs as both views have, or `written` of a count_record, at most `pairs.limit`.
+    void sort(const buffer_view<device>& keys, const buffer_view<device>& values);
+    void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+              const counted<device>& pairs);
+
+    /// A running sum along an axis of a volume, into another one of the same size.
+    void scan(const volume& from, const volume& into, const volume_scan& how);
+
+    /// Adds every element's slabs to an int32 volume. The drawn routes are exact for any number of
+    /// elements; see drawn_sums.hpp.
+    template <slab_kernel K>
+    void accumulate(const K& kernel, const bindings<device, K>& buffers, range elements,
+                    const accumulation<device>& out);
+    template <slab_kernel K>
+    void accumulate(const K& kernel, const bindings<device, K>& buffers,
+                    const counted<device>& elements, const accumulation<device>& out);
+
+    template <grid_map_kernel K>
+    void map(const K& kernel, const bindings<device, K>& buffers,
+             const volume_bindings<device, K>& volumes, range elements);
+    template <voxel_kernel K>
+    void map_voxels(const K& kernel, const bindings<device, K>& buffers,
+                    const volume_bindings<device, K>& volumes, const glm::uvec3& extent);
+    template <draw_kernel K>
+    void draw(const K& kernel, const bindings<device, K>& buffers,
+              const image_bindings<device, K>& images, const volume_bindings<device, K>& volumes,
+              const draw_geometry<device>& geometry, const draw_target<device>& target,
+              const draw_state& state);
+
   private:
     friend class device;
     explicit recorder(detail::context& context) noexcept : context_(&context) {}
@@ -72,6 +107,17 @@ class recorder {
     template <strip_kernel K>
     void expand_elements(const K& kernel, const bindings<device, K>& buffers,
                          const detail::element_range& elements, const triangle_list<device>& out);
+    template <slab_kernel K>
+    void accumulate_elements(const K& kernel, const bindings<device, K>& buffers,
+                             const detail::element_range& elements,
+                             const accumulation<device>& out);
+    template <draw_kernel K>
+    void draw_kernel_call(const K& kernel, const detail::kernel_call& call,
+                          const image_bindings<device, K>& images,
+                          const draw_geometry<device>& geometry, const draw_target<device>& target,
+                          const draw_state& state);
+    void sort_pairs(const buffer_view<device>& keys, const buffer_view<device>& values,
+                    std::uint32_t limit, const buffer_view<device>& length);
 
     detail::context* context_;
     std::optional<error> error_;

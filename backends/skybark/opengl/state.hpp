@@ -171,6 +171,20 @@ class saved_drawing {
     bool discard_;
 };
 
+/// The framebuffer that is copied from.
+class saved_read_framebuffer {
+  public:
+    explicit saved_read_framebuffer(const gl::functions& functions)
+        : gl_(functions), framebuffer_(get_handle(functions, gl::read_framebuffer_binding)) {}
+    ~saved_read_framebuffer() { gl_.bind_framebuffer(gl::read_framebuffer, framebuffer_); }
+    saved_read_framebuffer(const saved_read_framebuffer&) = delete;
+    saved_read_framebuffer& operator=(const saved_read_framebuffer&) = delete;
+
+  private:
+    const gl::functions& gl_;
+    gl::handle framebuffer_;
+};
+
 /// The transform feedback object.
 class saved_feedback {
   public:
@@ -276,20 +290,27 @@ class saved_raster {
     bool cull_ = false;
 };
 
-inline constexpr std::size_t max_kernel_images = 8;
+/// A kind of texture, and what tells which one of it is bound.
+struct texture_target {
+    gl::token target = gl::texture_2d;
+    gl::token binding = gl::texture_binding_2d;
+};
+inline constexpr texture_target flat_texture{gl::texture_2d, gl::texture_binding_2d};
+inline constexpr texture_target deep_texture{gl::texture_3d, gl::texture_binding_3d};
 
-/// The 2-D textures and samplers of the first `count` units.
+/// The textures of one kind, and the samplers, of the units [first, first + count).
 class saved_textures {
   public:
-    saved_textures(const gl::functions& functions, std::size_t count)
-        : gl_(functions), count_(count) {
+    saved_textures(const gl::functions& functions, texture_target kind, std::size_t first,
+                   std::size_t count)
+        : gl_(functions), kind_(kind), first_(first), count_(count) {
         if (count_ == 0) {
             return;
         }
         active_ = get_handle(gl_, gl::active_texture);
         for (std::size_t i = 0; i < count_; ++i) {
-            gl_.active_texture(gl::texture0 + static_cast<gl::token>(i));
-            textures_[i] = get_handle(gl_, gl::texture_binding_2d);
+            gl_.active_texture(gl::texture0 + static_cast<gl::token>(first_ + i));
+            textures_[i] = get_handle(gl_, kind_.binding);
             samplers_[i] = get_handle(gl_, gl::sampler_binding);
         }
     }
@@ -298,9 +319,9 @@ class saved_textures {
             return;
         }
         for (std::size_t i = 0; i < count_; ++i) {
-            gl_.active_texture(gl::texture0 + static_cast<gl::token>(i));
-            gl_.bind_texture(gl::texture_2d, textures_[i]);
-            gl_.bind_sampler(static_cast<gl::handle>(i), samplers_[i]);
+            gl_.active_texture(gl::texture0 + static_cast<gl::token>(first_ + i));
+            gl_.bind_texture(kind_.target, textures_[i]);
+            gl_.bind_sampler(static_cast<gl::handle>(first_ + i), samplers_[i]);
         }
         gl_.active_texture(active_);
     }
@@ -309,10 +330,45 @@ class saved_textures {
 
   private:
     const gl::functions& gl_;
+    texture_target kind_;
+    std::size_t first_;
     std::size_t count_;
     gl::token active_ = 0;
     std::array<gl::handle, max_kernel_images> textures_{};
     std::array<gl::handle, max_kernel_images> samplers_{};
+};
+
+/// What shaders load from and store to, of the image units [first, first + count).
+class saved_image_units {
+  public:
+    saved_image_units(const gl::functions& functions, std::uint32_t first, std::size_t count)
+        : gl_(functions), first_(first), count_(count) {
+        for (std::uint32_t i = 0; i < count_; ++i) {
+            for (std::size_t n = 0; n < names.size(); ++n) {
+                gl_.get_integer_i(names[n], first_ + i, &units_[i][n]);
+            }
+        }
+    }
+    ~saved_image_units() {
+        for (std::uint32_t i = 0; i < count_; ++i) {
+            const auto& [texture, level, layered, layer, access, format] = units_[i];
+            gl_.bind_image_texture(first_ + i, static_cast<gl::handle>(texture), level,
+                                   static_cast<gl::boolean>(layered), layer,
+                                   static_cast<gl::token>(access), static_cast<gl::token>(format));
+        }
+    }
+    saved_image_units(const saved_image_units&) = delete;
+    saved_image_units& operator=(const saved_image_units&) = delete;
+
+  private:
+    static constexpr std::array<gl::token, 6> names = {
+        gl::image_binding_name,  gl::image_binding_level,  gl::image_binding_layered,
+        gl::image_binding_layer, gl::image_binding_access, gl::image_binding_format};
+
+    const gl::functions& gl_;
+    std::uint32_t first_;
+    std::size_t count_;
+    std::array<std::array<int, 6>, 8> units_{};
 };
 
 /// How pixels lie in the memory that an image is copied from or to; set to packed rows.
