@@ -486,4 +486,322 @@ TEST_P(drawing, depth_is_tested_and_not_written) {
     });
 }
 
+/// Octaves: Σ a^i e^(−b^i A) P(c^i g) (Wrenninge et al. 2013).
+TEST_P(drawing, octaves_add_up) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        stage<B> on(device);
+        const auto lit = clear_volume(device, 3);
+        const vec3 eye(0, 0, 100);
+        const vec3 to_sun = glm::normalize(vec3(1, 2, -1));
+        on.set(scene_at(eye, {0, 0, 0}, to_sun));
+        cloud_particle p;
+        p.radius = 30;
+        p.optical_depth = 2;
+        cloud_lighting lighting = plain_light(grid_at({-2, -2, -2}));
+        lighting.phase = phase_function::henyey_greenstein(0.85).parameters();
+        add_octaves(lighting, 5, 0.6f, 0.4f, 0.7f);
+        const auto pixels = on.draw({&p, 1}, {lighting, &lit, nullptr, nullptr, {}});
+        for (int y = 0; y < side; ++y) {
+            for (int x = 0; x < side; ++x) {
+                const double cosine = glm::dot(direction_of(x, y, eye, {0, 0, 0}), dvec3(to_sun));
+                double sum = 0;
+                for (int i = 0; i < 5; ++i) {
+                    const double g = 0.85 * std::pow(0.7, i);
+                    sum += std::pow(0.6, i) * std::exp(-3 * std::pow(0.4, i)) * (1 - g * g) /
+                           (4 * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+                }
+                const vec4 pixel = pixels[static_cast<std::size_t>(y * side + x)];
+                // Polynomials and directions round to 1e-5 of what they give.
+                ASSERT_NEAR(pixel.g, 2 * sum * double{pixel.a}, 1e-4) << x << ' ' << y;
+            }
+        }
+    });
+}
+
+/// A column of depth 12 under a white sky and over black ground, then the other way round: the
+/// means of two streams without absorption, whose net flux is T = 1 / (1 + 3/4 (1 − g) tau).
+TEST_P(drawing, light_of_the_sky_comes_by_two_streams) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        stage<B> on(device);
+        // tau grows downwards: 12 at the bottom of 16 layers of 4 m, half a layer's worth less at
+        // each centre, then as in a box: an empty layer on top, a full one at the bottom.
+        std::vector<float> voxels(4 * 18 * 4);
+        for (std::size_t i = 0; i < voxels.size(); ++i) {
+            const double layer = static_cast<double>(i / 4 % 18);
+            voxels[i] = static_cast<float>(std::clamp((16.5 - layer) / 16 * 12, 0.0, 12.0));
+        }
+        const auto above = make_volume(device, {4, 18, 4}, voxels);
+        const auto sun = clear_volume(device, 50); // no sun
+        light_box box;
+        box.grid = grid_at({-100, -36, -100}, 50);
+        box.grid.row_y = vec4(0, 0.25f, 0, 0);
+        const auto phase = phase_function::henyey_greenstein(0.8);
+        attenuation_options extinction;
+        extinction.light = attenuation_light::extinction;
+        cloud_lighting lighting = single_scattering(extinction, box, phase);
+        add_sky(lighting, extinction, box, phase);
+        lighting.forward_point = 0;
+        const vec3 eye(0, 0, 3000);
+        const double gamma = 0.75 * 0.2;
+        for (const bool from_above : {true, false}) {
+            kernels::scene_record scene = scene_at(eye, {0, 0, 0});
+            // Irradiance over pi 7 from one side, 0 from the other: 3.5 (1 ± n.y).
+            for (int c = 0; c < 3; ++c) {
+                scene.ambient[0][c] = 3.5f;
+                scene.ambient[2][c] = from_above ? 3.5f : -3.5f;
+            }
+            on.set(scene);
+            for (const float y : {-25.0f, 0.0f, 10.0f, 29.0f}) {
+                cloud_particle p;
+                p.position = vec3(0, y, 0);
+                p.radius = 3;
+                p.optical_depth = 4000; // opaque out to where only one pixel's ray goes
+                scene = scene_at(vec3(0, y, 3000), p.position);
+                for (int c = 0; c < 3; ++c) {
+                    scene.ambient[0][c] = 3.5f;
+                    scene.ambient[2][c] = from_above ? 3.5f : -3.5f;
+                }
+                // A long lens: the particle fills the picture.
+                scene.to_clip = glm::perspectiveRH_ZO(0.0002f, 1.0f, 10.0f, 10000.0f) *
+                                glm::lookAtRH(vec3(0, y, 3000), p.position, vec3(0, 1, 0));
+                scene.from_clip = glm::inverse(scene.to_clip);
+                on.set(scene);
+                const auto pixels = on.draw({&p, 1}, {lighting, &sun, &above, nullptr, {}});
+                const double tau = (32 - double{y}) / 64 * 12;
+                const double over = from_above ? tau : 12 - tau;
+                const double expected = 7 * (1 + 2 * gamma * (12 - over)) / (2 * (1 + gamma * 12));
+                const vec4 middle = pixels[side / 2 * side + side / 2];
+                ASSERT_NEAR(middle.a, 1, 1e-5);
+                EXPECT_NEAR(middle.r, expected, 2e-3 * expected) << y << ' ' << from_above;
+            }
+        }
+    });
+}
+
+/// A grid of one density: alpha is that of its length along the ray, however long; its light is
+/// what the attenuation at every step says; and it ends at what is opaque.
+TEST_P(drawing, a_grid_is_marched) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        stage<B> on(device);
+        const std::vector<float> ones(8 * 8 * 8, 0.5f);
+        const auto density = make_volume(device, {8, 8, 8}, ones);
+        density_box where;
+        where.low = vec3(-20, -10, -15);
+        where.high = vec3(20, 10, 15);
+        where.extinction = 0.1f; // 0.05 1/m
+        where.albedo = 0.8f;
+        const auto lit = clear_volume(device, 1);
+        auto rays = cloud_density<B>::create(device);
+        ASSERT_TRUE(rays);
+        const cloud_lighting lighting = plain_light(grid_at({-2, -2, -2}));
+        for (const vec3 eye : {vec3(50, 40, 60), vec3(0, 0, 80), vec3(1, 2, 3)}) {
+            for (const bool wall : {false, true}) {
+                const vec3 at = eye == vec3(1, 2, 3) ? vec3(5, 0, 0) : vec3(0);
+                const kernels::scene_record scene = scene_at(eye, at);
+                on.set(scene);
+                // A wall across the line of sight, at the middle of the box.
+                const vec4 middle = scene.to_clip * vec4(0, 0, 0, 1);
+                const dvec3 ahead = glm::normalize(dvec3(at) - dvec3(eye));
+                const double wall_away = glm::dot(-dvec3(eye), ahead);
+                if (wall && wall_away < 1) {
+                    continue;
+                }
+                ASSERT_TRUE(run(device, [&](auto& r) {
+                    on.clear(r, vec4(0), wall ? middle.z / middle.w : 1.0f);
+                    rays->record(r, density, where, on.scene(),
+                                 {lighting, &lit, nullptr, nullptr, {}}, on.color(), on.depth());
+                }));
+                const auto pixels = on.pixels();
+                for (int y = 0; y < side; ++y) {
+                    for (int x = 0; x < side; ++x) {
+                        const dvec3 to = direction_of(x, y, eye, at);
+                        double first = 0;
+                        double last = 1e9;
+                        for (int a = 0; a < 3; ++a) {
+                            const double s = (double{where.low[a]} - double{eye[a]}) / to[a];
+                            const double e = (double{where.high[a]} - double{eye[a]}) / to[a];
+                            first = std::max(first, std::min(s, e));
+                            last = std::min(last, std::max(s, e));
+                        }
+                        if (wall) {
+                            last = std::min(last, wall_away / glm::dot(to, ahead));
+                        }
+                        const double alpha = 1 - std::exp(-0.05 * std::max(last - first, 0.0));
+                        const vec4 pixel = pixels[static_cast<std::size_t>(y * side + x)];
+                        // The depth of a wall rounds to 6e-8 of 1, which 60 m away is 2 cm; rays
+                        // end when 1/2048 is left.
+                        const double tolerance = 6e-4 + (wall ? 0.05 * 0.02 : 0.0);
+                        ASSERT_NEAR(pixel.a, alpha, tolerance) << x << ' ' << y;
+                        ASSERT_NEAR(pixel.b, 3 * 0.8 / 4 * std::exp(-1.0) * alpha, tolerance);
+                    }
+                }
+            }
+        }
+    });
+}
+
+/// The shadow on the ground is what the column towards the sun lets through: a Gaussian's depth on
+/// the line from the ground's point to the sun.
+TEST_P(drawing, the_ground_lies_in_the_clouds_shadow) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        stage<B> on(device);
+        std::vector<cloud_particle> cloud(3);
+        cloud[0].position = vec3(0, 500, 0);
+        cloud[1].position = vec3(80, 520, 30);
+        cloud[2].position = vec3(-60, 460, -90);
+        for (cloud_particle& p : cloud) {
+            p.radius = 180;
+            p.optical_depth = 1.2f;
+        }
+        const vec3 to_sun = glm::normalize(vec3(0.5f, 1, 0.2f));
+        attenuation_options how;
+        how.light = attenuation_light::extinction;
+        auto volume = attenuation_volume<B>::create(device, glm::uvec3(96), how);
+        ASSERT_TRUE(volume) << volume.error().message;
+        const auto box = fit_light_box(cloud, to_sun, glm::uvec3(96));
+        ASSERT_TRUE(box);
+        const auto particles = make_buffer<B, cloud_particle>(device, cloud);
+        ASSERT_TRUE(particles);
+        // Straight down on where the shadow falls.
+        const vec3 at(-250, 0, -100);
+        const vec3 eye = at + vec3(0, 1200, 0);
+        kernels::scene_record scene = scene_at(eye, at, to_sun);
+        on.set(scene);
+        const auto ground = [&](float shadow) {
+            kernels::clouded_ground country;
+            country.grid = box->grid;
+            country.shadow = shadow;
+            EXPECT_TRUE(run(device, [&](auto& r) {
+                volume->relight(r, view<B>(*particles), 3, *box);
+                on.clear(r, vec4(0));
+                volume_bindings<B, kernels::clouded_ground> bound;
+                bound.read = {&volume->volume()};
+                draw_geometry<B> plane;
+                plane.count = 6;
+                r.draw(country, {on.scene()}, {}, bound, plane, {&on.color(), &on.depth(), {}, {}},
+                       draw_state{});
+            }));
+            return on.pixels();
+        };
+        const auto shaded = ground(1);
+        const auto sunny = ground(0);
+        double darkest = 1;
+        for (int y = 0; y < side; ++y) {
+            for (int x = 0; x < side; ++x) {
+                const dvec3 to = direction_of(x, y, eye, at);
+                const dvec3 place = dvec3(eye) + to * (-double{eye.y} / to.y);
+                double depth = 0;
+                for (const cloud_particle& p : cloud) {
+                    depth += depth_along(p, hit(p, place, glm::normalize(dvec3(to_sun))));
+                }
+                const std::size_t i = static_cast<std::size_t>(y * side + x);
+                ASSERT_GT(sunny[i].r, 0);
+                // Trilinear filtering of 7 m voxels, σ = 60 m: h²/8 times the curvatures, 3.6/σ²
+                // each in two directions, is 0.012 in depth; where particles end, 0.013 more.
+                const double light = double{shaded[i].r} / double{sunny[i].r};
+                ASSERT_NEAR(light, std::exp(-depth), 0.015) << x << ' ' << y;
+                darkest = std::min(darkest, light);
+            }
+        }
+        EXPECT_LT(darkest, 0.15);
+    });
+}
+
+/// What a picture takes: two frames, the second one without any memory.
+TEST(cloud_billboards, frames_allocate_nothing) {
+    using B = cpu::device;
+    B device;
+    stage<B> on(device);
+    const auto lit = clear_volume(device);
+    on.set(scene_at({0, 0, 100}, {0, 0, 0}));
+    const auto buffer = make_buffer<B, cloud_particle>(device, thick_crowd(3, 500));
+    const cloud_lighting lighting = plain_light(grid_at({-2, -2, -2}));
+    std::uint64_t allocations[2] = {0, 0};
+    for (std::uint64_t& count : allocations) {
+        auto recorder = device.begin();
+        const std::uint64_t before = support::allocations;
+        on.puffs().record(*recorder, view<B>(*buffer), 500, {0, 0, 100}, on.scene(),
+                          {lighting, &lit, nullptr, nullptr, {}},
+                          {&on.color(), &on.depth(), {}, {}});
+        count = support::allocations - before;
+        ASSERT_TRUE(device.submit(*recorder));
+    }
+    EXPECT_EQ(allocations[1], 0u);
+}
+
+TEST(cloud_billboards, more_than_a_device_binds_is_refused) {
+    cpu::device device;
+    const auto made = cloud_billboards<cpu::device>::create(device, 0xffffffffu);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, error_code::bad_input);
+}
+
+/// A whole picture: sky, ground with shadow, a small cumulus in sun and sky light.
+template <volume_backend B>
+std::vector<std::uint8_t> picture_on(B& device) {
+    cumulus_options options;
+    options.particles = 1500;
+    const auto cloud = cumulus_cloud(options);
+    picture::cloud_picture_options how;
+    how.width = 200;
+    how.height = 120;
+    how.eye = vec3(300, 500, 2600);
+    how.target = vec3(0, 1000, 0);
+    const auto phase = phase_function::henyey_greenstein(0.85);
+    attenuation_options light;
+    light.forward = static_cast<float>(phase.forward_energy());
+    const glm::uvec3 voxels(48);
+    auto sun = attenuation_volume<B>::create(device, voxels, light);
+    auto sky = attenuation_volume<B>::create(device, voxels, light);
+    auto painter =
+        picture::cloud_painter<B>::create(device, how, static_cast<std::uint32_t>(cloud.size()));
+    EXPECT_TRUE(sun && sky && painter);
+    const auto scene = picture::cloud_scene({-700, 900, -700}, {700, 1700, 700}, how);
+    const auto to_sun = fit_light_box(cloud, vec3(scene.sky.to_sun), voxels);
+    const auto up = fit_light_box(cloud, {0, 1, 0}, voxels);
+    const auto particles = make_buffer<B, cloud_particle>(device, cloud);
+    EXPECT_TRUE(to_sun && up && particles);
+    cloud_lighting lighting = single_scattering(light, *to_sun, phase);
+    add_sky(lighting, light, *up, phase);
+    const auto count = static_cast<std::uint32_t>(cloud.size());
+    const auto done = run(device, [&](auto& r) {
+        sun->relight(r, view<B>(*particles), count, *to_sun);
+        sky->relight(r, view<B>(*particles), count, *up);
+        painter->record(r, scene, view<B>(*particles), count,
+                        {lighting, &sun->volume(), &sky->volume(), nullptr, {}}, 0);
+    });
+    EXPECT_TRUE(done) << done.error().message;
+    auto pixels = painter->download(device);
+    EXPECT_TRUE(pixels);
+    return std::move(*pixels);
+}
+
+TEST_P(drawing, pictures_agree_with_the_cpus) {
+    support::with_device(GetParam(), [](auto& device) {
+        cpu::device cpu;
+        const auto expected = picture_on(cpu);
+        const auto actual = picture_on(device);
+        ASSERT_EQ(actual.size(), expected.size());
+        double sum = 0;
+        int worst = 0;
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            const int off = std::abs(int{actual[i]} - int{expected[i]});
+            sum += off;
+            worst = std::max(worst, off);
+        }
+        const double mean = sum / static_cast<double>(expected.size());
+        testing::Test::RecordProperty("mean", std::to_string(mean));
+        EXPECT_LE(mean, 0.1) << "1 is what is asked for";
+        // A horizon may lie a pixel higher.
+        EXPECT_LE(worst, 64);
+        // There is a cloud: some of it is brighter than the sky behind it.
+        const auto at = [&](int x, int y) { return int{actual[std::size_t(4 * (y * 200 + x))]}; };
+        EXPECT_NE(at(100, 55), at(5, 55));
+    });
+}
+
 } // namespace
