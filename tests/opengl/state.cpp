@@ -10,7 +10,11 @@ namespace {
 using kernels::probe_image;
 using kernels::probe_map;
 using kernels::probe_rings;
+using kernels::probe_slabs;
 using kernels::probe_strips;
+using kernels::probe_volume;
+using kernels::probe_volume_draw;
+using kernels::probe_voxels;
 
 /// Calls an OpenGL function by its pointer's type and its name.
 class caller_functions {
@@ -69,7 +73,7 @@ class snapshot_maker {
                 }
             }
         }
-        for (GLenum unit = 0; unit < 10; ++unit) {
+        for (GLenum unit = 0; unit < 14; ++unit) {
             ask_unit(unit);
         }
         for (const GLenum target :
@@ -313,7 +317,7 @@ void bind_unusual_objects(const caller_functions& gl) {
     GLuint renderbuffer = 0;
     GL_CALL(PFNGLCREATERENDERBUFFERSPROC, glCreateRenderbuffers, 1, &renderbuffer);
     GL_CALL(PFNGLBINDRENDERBUFFERPROC, glBindRenderbuffer, GL_RENDERBUFFER, renderbuffer);
-    for (GLuint unit = 0; unit < 9; ++unit) {
+    for (GLuint unit = 0; unit < 13; ++unit) {
         GLuint textures[2];
         GLuint sampler = 0;
         GL_CALL(PFNGLCREATETEXTURESPROC, glCreateTextures, GL_TEXTURE_2D, 1, textures);
@@ -324,7 +328,123 @@ void bind_unusual_objects(const caller_functions& gl) {
         GL_CALL(PFNGLBINDSAMPLERPROC, glBindSampler, unit, sampler);
     }
     GL_CALL(PFNGLACTIVETEXTUREPROC, glActiveTexture, GL_TEXTURE5);
+    GLuint flat = 0;
+    GLuint deep = 0;
+    GL_CALL(PFNGLCREATETEXTURESPROC, glCreateTextures, GL_TEXTURE_2D, 1, &flat);
+    GL_CALL(PFNGLCREATETEXTURESPROC, glCreateTextures, GL_TEXTURE_3D, 1, &deep);
+    GL_CALL(PFNGLTEXTURESTORAGE2DPROC, glTextureStorage2D, flat, 2, GL_RGBA8, 4, 4);
+    GL_CALL(PFNGLTEXTURESTORAGE3DPROC, glTextureStorage3D, deep, 2, GL_R32F, 4, 4, 4);
+    for (GLuint unit = 0; unit < 8; ++unit) {
+        if (unit % 3 == 0) {
+            GL_CALL(PFNGLBINDIMAGETEXTUREPROC, glBindImageTexture, unit, flat, 1, GLboolean(0), 0,
+                    GL_READ_WRITE, GL_RGBA8UI);
+        } else if (unit % 3 == 1) {
+            GL_CALL(PFNGLBINDIMAGETEXTUREPROC, glBindImageTexture, unit, deep, 0, GLboolean(0), 2,
+                    GL_WRITE_ONLY, GL_R32F);
+        }
+    }
 }
+
+/// What a device does with volumes and words.
+template <class After>
+class volume_patterns {
+  public:
+    volume_patterns(gpu& device, After& after) : device_(device), after_(after) {
+        const volume_format formats[] = {volume_format::int32, volume_format::int32,
+                                         volume_format::float32, volume_format::float16,
+                                         volume_format::float32};
+        for (std::size_t i = 0; i < volumes_.size(); ++i) {
+            volumes_[i] = *device_.create_volume({6, 5, 4, formats[i]});
+        }
+        after_("create_volume");
+        const std::vector<float> voxels(120, 0.5f);
+        for (const std::size_t i : {2, 4}) {
+            EXPECT_TRUE(device_.upload(volumes_[i], std::as_bytes(std::span(voxels))));
+        }
+        after_("upload volume");
+    }
+
+    void record(recorder& r, const image& color) {
+        const std::vector<kernels::probe_box> boxes{{{-1, 1, 0, 300}, {4, 9, 3, -2}},
+                                                    {{2, -3, 1, -7}, {9, 4, 9, 1}}};
+        const std::vector<count_record> two{{2, 2, {0, 0}}};
+        boxes_ = *make_buffer<gpu, kernels::probe_box>(device_, boxes);
+        length_ = *make_buffer<gpu, count_record>(device_, two);
+        const bindings<gpu, probe_slabs> bound{view<gpu>(boxes_)};
+        for (const accumulate_route route :
+             {accumulate_route::direct, accumulate_route::tiles_copied,
+              accumulate_route::tiles_drawn, accumulate_route::layers}) {
+            for (const padding policy : {padding::compact, padding::degenerate}) {
+                const std::string name =
+                    "accumulate " + std::to_string(int(route)) + " " + std::to_string(int(policy));
+                r.accumulate(probe_slabs{4, 1, 2, 3}, bound, range{0, 2},
+                             {&volumes_[0], policy == padding::compact, route, policy});
+                after_(name.c_str());
+                r.accumulate(probe_slabs{4, 1, 2, 3}, bound, counted<gpu>{view<gpu>(length_), 9},
+                             {&volumes_[0], false, route, policy});
+                after_((name + " counted").c_str());
+            }
+        }
+        r.scan(volumes_[0], volumes_[1], {scan_axis::x, scan_direction::ascending});
+        r.scan(volumes_[0], volumes_[3], {});
+        after_("scan volume");
+        places_ = zeros(64);
+        numbers_ = zeros(4096);
+        sizes_ = zeros(4096);
+        r.map(probe_volume{}, {view<gpu>(places_), view<gpu>(numbers_), view<gpu>(sizes_)},
+              {{&volumes_[2], &volumes_[3]}, {&volumes_[4]}}, range{0, 2});
+        after_("map volumes");
+        r.map_voxels(probe_voxels{6, 5, 0.25f}, {view<gpu>(places_), view<gpu>(numbers_)},
+                     {{&volumes_[2], &volumes_[3]}, {&volumes_[4], &more()}}, {6, 5, 4});
+        after_("map_voxels");
+        const std::vector<kernels::probe_vertex> corners(
+            3, {glm::vec4(0.5f, 0.5f, 0.5f, 1), glm::vec4(0.5f)});
+        corners_ = *make_buffer<gpu, kernels::probe_vertex>(device_, corners);
+        source_ = *device_.create_image({2, 2, image_format::rgba8});
+        draw_geometry<gpu> geometry;
+        geometry.count = 3;
+        r.draw(probe_volume_draw{}, {view<gpu>(corners_)}, {sampled_image<gpu>{&source_}},
+               {{&volumes_[2], &volumes_[3]}, {}}, geometry, {&color, nullptr, {}, {}}, {});
+        after_("draw volumes");
+        r.scan({&numbers_, 0, 480}, {&sizes_, 0, 16});
+        after_("scan words");
+        r.sort({&numbers_, 512, 256}, {&numbers_, 1024, 256});
+        r.sort({&numbers_, 512, 256}, {&numbers_, 1024, 256}, {view<gpu>(length_), 64});
+        after_("sort");
+    }
+
+    void download(std::vector<std::byte>& all) {
+        for (const volume& each : volumes_) {
+            std::vector<std::byte> bytes(each.description().size_bytes());
+            EXPECT_TRUE(device_.download(each, bytes));
+            all.insert(all.end(), bytes.begin(), bytes.end());
+        }
+        for (const buffer* each : {&numbers_, &sizes_}) {
+            std::vector<std::byte> bytes(4096);
+            EXPECT_TRUE(device_.download(*each, 0, bytes));
+            all.insert(all.end(), bytes.begin(), bytes.end());
+        }
+    }
+
+  private:
+    [[nodiscard]] buffer zeros(std::uint64_t bytes) { return *device_.create_buffer(bytes); }
+    [[nodiscard]] const volume& more() {
+        more_ = *device_.create_volume({6, 5, 4, volume_format::float32});
+        return more_;
+    }
+
+    gpu& device_;
+    After& after_;
+    std::array<volume, 5> volumes_;
+    volume more_;
+    image source_;
+    buffer boxes_;
+    buffer length_;
+    buffer places_;
+    buffer numbers_;
+    buffer sizes_;
+    buffer corners_;
+};
 
 /// Everything that a device does, one step at a time, and all that came of it.
 class all_patterns {
@@ -397,6 +517,8 @@ class all_patterns {
         after("draw indirect");
         r.copy({&outs[0], 0, 64}, {&outs[7], 0, 64});
         after("copy");
+        volume_patterns volumes(device_, after);
+        volumes.record(r, color);
         EXPECT_TRUE(device_.submit(r));
         after("submit");
         std::vector<std::byte> all;
@@ -412,6 +534,8 @@ class all_patterns {
             all.insert(all.end(), seen.begin(), seen.end());
         }
         after("download image");
+        volumes.download(all);
+        after("download volume");
         return all;
     }
 
