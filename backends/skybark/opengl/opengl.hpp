@@ -49,6 +49,14 @@
 #include <skybark/opengl/programs/probe_volume_draw.hpp>
 #include <skybark/opengl/programs/probe_voxels.hpp>
 #include <skybark/opengl/programs/ring_indices.hpp>
+#include <skybark/opengl/programs/scatter_average.hpp>
+#include <skybark/opengl/programs/scatter_coarsen.hpp>
+#include <skybark/opengl/programs/scatter_limit.hpp>
+#include <skybark/opengl/programs/scatter_medium.hpp>
+#include <skybark/opengl/programs/scatter_prolong.hpp>
+#include <skybark/opengl/programs/scatter_relax.hpp>
+#include <skybark/opengl/programs/scatter_restrict.hpp>
+#include <skybark/opengl/programs/scatter_source.hpp>
 #include <skybark/opengl/programs/segment_rings.hpp>
 #include <skybark/opengl/programs/shadow_polygon.hpp>
 #include <skybark/opengl/programs/shadow_slab.hpp>

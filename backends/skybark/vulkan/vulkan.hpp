@@ -45,6 +45,14 @@
 #include <skybark/vulkan/programs/probe_volume_draw.hpp>
 #include <skybark/vulkan/programs/probe_voxels.hpp>
 #include <skybark/vulkan/programs/ring_indices.hpp>
+#include <skybark/vulkan/programs/scatter_average.hpp>
+#include <skybark/vulkan/programs/scatter_coarsen.hpp>
+#include <skybark/vulkan/programs/scatter_limit.hpp>
+#include <skybark/vulkan/programs/scatter_medium.hpp>
+#include <skybark/vulkan/programs/scatter_prolong.hpp>
+#include <skybark/vulkan/programs/scatter_relax.hpp>
+#include <skybark/vulkan/programs/scatter_restrict.hpp>
+#include <skybark/vulkan/programs/scatter_source.hpp>
 #include <skybark/vulkan/programs/segment_rings.hpp>
 #include <skybark/vulkan/programs/shadow_polygon.hpp>
 #include <skybark/vulkan/programs/shadow_slab.hpp>

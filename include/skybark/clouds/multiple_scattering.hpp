@@ -1,0 +1,388 @@
+#pragma once
+// multiple_scattering: light of the sun that a cloud has scattered more than once, on the device,
+// from the attenuation volume alone, anew for every frame.
+//
+//     auto diffuse = multiple_scattering<B>::create(device, voxels, {scattering_medium{1, 0.85f}});
+//     attenuation.relight(recorder, particles, count, box);
+//     diffuse->solve(recorder, attenuation.volume(), box);
+//     … diffuse->fluence() on diffuse->grid(box) …
+//
+// The model is diffusion of what has left the sun's beam. Of a phase function with mean cosine g,
+// the part f of the energy goes on as if it had not been scattered (δ-Eddington: Joseph, Wiscombe
+// and Weinman 1976; f is the second moment, g² for Henyey–Greenstein). What the beam, thinned by
+// e^{−τ(1 − ωf)}, loses to scattering, feeds the diffuse fluence φ = ∫ L dω:
+//
+//     ∇·F + (1 − ω) σ φ = ω (1 − f) σ E,    F = (−∇φ + 3 ω (g − f) σ E l) / w,
+//     w = 3 (1 − ωg) σ + 2 / W + 1.5 |∇⊥φ| / φ,
+//
+// E the beam over the sun's irradiance, l its direction, σ the extinction. Light leaves through the
+// borders of the grid and none comes in (Marshak: F = φ/2). Without the last two terms of w this is
+// δ-Eddington, which is right for layers, whatever their depth, but loses too much light from the
+// sides of a cloud: a flux can't be larger than its fluence, and in empty space it isn't driven by
+// a gradient at all. The third term limits the flux where φ falls off sideways (Levermore and
+// Pomraning 1981, "A Flux-Limited Diffusion Theory"; Koerner, Portsmouth, Sadlo, Ertl and Eberhardt
+// 2014, "Flux-Limited Diffusion for Multiple Scattering in Participating Media"), but not along the
+// light, so that a layer stays exact; the second one is the resistance of empty space, from the
+// lateral width W of the box (1/W² = the mean of 1/Wx², 1/Wz²; none for an endless layer). Their
+// two factors were fitted to paths of photons in Gaussian clouds: tests/clouds/
+// multiple_scattering.cpp has the errors.
+//
+// Solved by full multigrid with a number of steps that depends on the sizes alone: from one cell up
+// to the finest grid, a V-cycle on each and `cycles` on the last one, the limiter in between. No
+// history; nothing is allocated by `solve`; the same bits each time.
+//
+// What a consumer does with it. At a place in the cloud, with I the sun's light there (e^{−A} of
+// the continuum's volume), E_0 the sun's irradiance and s = shared::scattering_without(ω, f), the
+// light sent towards the eye from a piece of optical depth τ is
+//
+//     (1 − e^{−τ s.depth}) E_0 [s.single I P(ω, l) + s.diffuse φ / 4π]:
+//
+// single scattering by the whole phase function, and φ again from everywhere. kernels::lit_puff and
+// kernels::lit_grid do that with this volume as their third, `diffuse_grid` = grid(box) and
+// `diffuse` = 1/4π. Fluence as a path tracer counts it is I + φ.
+
+#include <skybark/clouds/light_box.hpp>
+#include <skybark/core/backend.hpp>
+#include <skybark/kernels/scatter_average.hpp>
+#include <skybark/kernels/scatter_coarsen.hpp>
+#include <skybark/kernels/scatter_limit.hpp>
+#include <skybark/kernels/scatter_medium.hpp>
+#include <skybark/kernels/scatter_prolong.hpp>
+#include <skybark/kernels/scatter_relax.hpp>
+#include <skybark/kernels/scatter_restrict.hpp>
+#include <skybark/kernels/scatter_source.hpp>
+
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+namespace skybark::clouds {
+
+/// How a cloud scatters, the same everywhere in it. Where particles differ in albedo, the mean by
+/// optical depth is the best one number.
+struct scattering_medium {
+    float albedo = 1;              ///< ω, 0…1
+    float mean_cosine = 0.85f;     ///< g of one scattering, −1 < g < 1
+    float forward = 0.85f * 0.85f; ///< f, 0 ≤ f < 1: phase_function::forward_energy()
+};
+
+struct multiple_scattering_options {
+    scattering_medium medium;
+    /// The attenuation in the volume over the optical depth: 1 for attenuation_light::extinction,
+    /// 1 − ωf (`share_of(medium)`) for the continuum's.
+    float share = 1;
+    std::uint32_t halvings = 1; ///< the fluence has 2^-halvings of the volume's resolution
+    std::uint32_t cycles = 2;   ///< V-cycles on the finest grid, 1…64
+    float spreading = 1.5f;     ///< factor of the limiter; 0: plain δ-Eddington, with …
+    float emptiness = 2;        ///< … 0 here: the resistance of empty space times W
+    std::uint64_t most_bytes = std::uint64_t{2} << 30; ///< what all volumes together may take
+};
+
+/// For a volume of attenuation_light::continuum.
+[[nodiscard]] constexpr float share_of(const scattering_medium& medium) noexcept {
+    return 1 - medium.albedo * medium.forward;
+}
+
+template <volume_backend B>
+requires maps_voxels<B, kernels::scatter_relax>
+class multiple_scattering {
+  public:
+    /// For attenuation volumes of `voxels` (each side 4 or more). Takes about 4 bytes for each of
+    /// their voxels. Errors: bad_input for a medium or a size that makes no sense, or takes more
+    /// than most_bytes; what the device says.
+    [[nodiscard]] static result<multiple_scattering>
+    create(B& device, glm::uvec3 voxels, const multiple_scattering_options& options = {}) {
+        if (auto done = detail::check_voxels(voxels); !done) {
+            return failure(done.error());
+        }
+        if (auto done = check(options); !done) {
+            return failure(done.error());
+        }
+        multiple_scattering made(voxels, options);
+        if (made.bytes() > options.most_bytes) {
+            return fail(error_code::bad_input,
+                        std::string("Multiple scattering over a volume of ") +
+                            std::to_string(voxels.x) + " x " + std::to_string(voxels.y) + " x " +
+                            std::to_string(voxels.z) + " voxels takes " +
+                            std::to_string(made.bytes() >> 20) + " MiB; at most " +
+                            std::to_string(options.most_bytes >> 20) + " MiB are allowed.");
+        }
+        for (level& l : made.levels_) {
+            for (std::uint32_t i = 0; i < l.volumes; ++i) {
+                auto volume = device.create_volume(
+                    {static_cast<std::uint32_t>(l.size.x), static_cast<std::uint32_t>(l.size.y),
+                     static_cast<std::uint32_t>(l.size.z), volume_format::float32});
+                if (!volume) {
+                    return failure(volume.error());
+                }
+                l.volume.push_back(std::move(*volume));
+            }
+        }
+        return made;
+    }
+
+    /// Records the diffuse fluence for the cloud whose attenuation is in `attenuation`, a volume of
+    /// floats that lies in `box`. As attenuation_volume makes it: nothing in the outermost layer of
+    /// voxels, but for what is below the cloud.
+    void solve(typename B::recorder& recorder, const typename B::volume& attenuation,
+               const light_box& box) {
+        assert(box.voxels == voxels_ && "a box that was fitted for another volume");
+        place(box);
+        take_matter(recorder, attenuation, glm::vec3(box.grid.voxel));
+        const std::size_t last = levels_.size() - 1;
+        limit(recorder, last, true);
+        source(recorder, last);
+        cycle(recorder, last, false);
+        for (std::size_t l = last; l-- > finest();) {
+            prolong(recorder, l, true);
+            improve(recorder, l);
+        }
+        for (std::uint32_t c = 1; c < options_.cycles; ++c) {
+            improve(recorder, finest());
+        }
+    }
+
+    /// φ over the sun's irradiance at the middle of every cell, of float32: what the latest `solve`
+    /// made. To sample trilinearly at cells_of(grid(box), place) / size().
+    [[nodiscard]] const typename B::volume& fluence() const {
+        const level& l = levels_[finest()];
+        return l.volume[phi + l.current];
+    }
+    [[nodiscard]] glm::uvec3 size() const { return glm::uvec3(levels_[finest()].size); }
+
+    /// Where the fluence lies, for the box of an attenuation volume. Odd volumes end half way
+    /// through its last cell.
+    [[nodiscard]] light_grid grid(const light_box& box) const {
+        light_grid coarse = box.grid;
+        const float over = 1.0f / static_cast<float>(1u << options_.halvings);
+        coarse.row_x *= over;
+        coarse.row_y *= over;
+        coarse.row_z *= over;
+        coarse.voxel = glm::vec4(glm::vec3(box.grid.voxel) / over, box.grid.voxel.w);
+        return coarse;
+    }
+
+    /// The diffuse flux that leaves through the grid's borders of constant x, y and z, over the
+    /// fluence of the cell there. So the transmission of a layer is e^{−τ(1 − ωf)} plus the fluence
+    /// of the undermost cell times escape(box).y, and its diffuse reflection is that of the topmost
+    /// one.
+    [[nodiscard]] glm::vec3 escape(const light_box& box) const {
+        const glm::vec3 side = glm::vec3(grid(box).voxel);
+        const float empty = emptiness(box);
+        return {shared::scatter_escape(empty, side.x), shared::scatter_escape(empty, side.y),
+                shared::scatter_escape(empty, side.z)};
+    }
+
+    /// Device memory of all volumes.
+    [[nodiscard]] std::uint64_t bytes() const {
+        std::uint64_t sum = 0;
+        for (const level& l : levels_) {
+            sum += std::uint64_t{4} * l.volumes * static_cast<std::uint64_t>(l.size.x) *
+                   static_cast<std::uint64_t>(l.size.y) * static_cast<std::uint64_t>(l.size.z);
+        }
+        return sum;
+    }
+    [[nodiscard]] const multiple_scattering_options& options() const noexcept { return options_; }
+
+    /// For the next `solve`. Errors: bad_input, and nothing is changed.
+    [[nodiscard]] result<void> set_medium(const scattering_medium& medium, float share = 1) {
+        multiple_scattering_options next = options_;
+        next.medium = medium;
+        next.share = share;
+        if (auto done = check(next); !done) {
+            return done;
+        }
+        options_ = next;
+        return {};
+    }
+
+  private:
+    /// A grid's volumes, in order.
+    enum slot : std::size_t { extinction, scattered, beam, resistance, lit, phi };
+    struct level {
+        glm::ivec3 size{1};
+        glm::vec3 side{1};         ///< m
+        std::uint32_t volumes = 0; ///< two of fluence, or (finer than the finest) matter alone
+        std::size_t current = 0;   ///< which of the two fluences is the latest
+        std::vector<typename B::volume> volume;
+    };
+
+    multiple_scattering(glm::uvec3 voxels, const multiple_scattering_options& options)
+        : options_(options), voxels_(voxels) {
+        glm::ivec3 size = (glm::ivec3(voxels) + 1) / 2;
+        for (;;) {
+            level l;
+            l.size = size;
+            l.volumes = levels_.size() < finest() ? 3 : 7;
+            levels_.push_back(std::move(l));
+            if (size == glm::ivec3(1)) {
+                return;
+            }
+            size = (size + 1) / 2;
+        }
+    }
+
+    [[nodiscard]] static result<void> check(const multiple_scattering_options& options) {
+        const scattering_medium& m = options.medium;
+        const bool medium = m.albedo >= 0 && m.albedo <= 1 && m.mean_cosine > -1 &&
+                            m.mean_cosine < 1 && m.forward >= 0 && m.forward < 1;
+        if (!medium) {
+            return fail(error_code::bad_input,
+                        std::string("Multiple scattering was asked for with albedo ") +
+                            std::to_string(m.albedo) + ", mean cosine " +
+                            std::to_string(m.mean_cosine) + " and forward part " +
+                            std::to_string(m.forward) +
+                            "; expected 0 to 1, above -1 to below 1, and 0 to below 1.");
+        }
+        if (!(options.share > 0 && options.share <= 1) || options.halvings < 1 ||
+            options.halvings > 4 || options.cycles < 1 || options.cycles > 64 ||
+            !(options.spreading >= 0 && options.spreading <= 100) ||
+            !(options.emptiness >= 0 && options.emptiness <= 100)) {
+            return fail(error_code::bad_input,
+                        std::string("Multiple scattering was asked for with a share of ") +
+                            std::to_string(options.share) + ", " +
+                            std::to_string(options.halvings) + " halvings, " +
+                            std::to_string(options.cycles) + " cycles, spreading " +
+                            std::to_string(options.spreading) + " and emptiness " +
+                            std::to_string(options.emptiness) +
+                            "; expected above 0 to 1, 1 to 4, 1 to 64, 0 to 100 and 0 to 100.");
+        }
+        return {};
+    }
+
+    [[nodiscard]] std::size_t finest() const { return options_.halvings - 1; }
+
+    /// The resistance of empty space, 1/m. Never quite none, so that no cell is without.
+    [[nodiscard]] float emptiness(const light_box& box) const {
+        const glm::vec3 whole = glm::vec3(box.grid.voxel) * glm::vec3(box.voxels);
+        const float over2 = 0.5f / (whole.x * whole.x) + 0.5f / (whole.z * whole.z);
+        return options_.emptiness * std::sqrt(over2) + 0.01f / whole.y;
+    }
+
+    void place(const light_box& box) {
+        empty_ = emptiness(box);
+        glm::vec3 side = glm::vec3(box.grid.voxel) * 2.0f;
+        for (level& l : levels_) {
+            l.current = 0;
+            l.side = side;
+            for (int a = 0; a < 3; ++a) {
+                side[a] *= l.size[a] > 1 ? 2.0f : 1.0f;
+            }
+        }
+    }
+
+    template <class K>
+    void map(typename B::recorder& recorder, const K& kernel, std::size_t to,
+             const std::array<const typename B::volume*, volumes_of<K>>& read,
+             const std::array<const typename B::volume*, volume_targets_of<K>>& write) {
+        volume_bindings<B, K> bound;
+        bound.read = read;
+        bound.write = write;
+        recorder.map_voxels(kernel, {}, bound, glm::uvec3(levels_[to].size));
+    }
+
+    [[nodiscard]] const typename B::volume* at(std::size_t l, std::size_t which) const {
+        return &levels_[l].volume[which];
+    }
+    [[nodiscard]] const typename B::volume* now(std::size_t l) const {
+        return at(l, phi + levels_[l].current);
+    }
+    [[nodiscard]] const typename B::volume* next(std::size_t l) const {
+        return at(l, phi + 1 - levels_[l].current);
+    }
+    void swap(std::size_t l) { levels_[l].current = 1 - levels_[l].current; }
+
+    /// Matter and beam on every grid.
+    void take_matter(typename B::recorder& recorder, const typename B::volume& attenuation,
+                     glm::vec3 voxel) {
+        const scattering_medium& m = options_.medium;
+        const float depth = 1 - m.albedo * m.forward;
+        kernels::scatter_medium matter;
+        matter.extinction = 1 / (8 * voxel.y * options_.share);
+        matter.kept = depth / options_.share;
+        matter.scattered = m.albedo * (1 - m.forward) / (depth * 8 * voxel.y);
+        map(recorder, matter, 0, {&attenuation},
+            {at(0, extinction), at(0, scattered), at(0, beam)});
+        for (std::size_t l = 1; l < levels_.size(); ++l) {
+            map(recorder, kernels::scatter_coarsen{}, l,
+                {at(l - 1, extinction), at(l - 1, scattered), at(l - 1, beam)},
+                {at(l, extinction), at(l, scattered), at(l, beam)});
+        }
+    }
+
+    /// The resistance of a grid, from its fluence or (first) from none, and of all coarser ones.
+    void limit(typename B::recorder& recorder, std::size_t l, bool first) {
+        kernels::scatter_limit how;
+        how.sides = glm::vec4(levels_[l].side, empty_);
+        how.transport = 1 - options_.medium.albedo * options_.medium.mean_cosine;
+        how.spreading = options_.spreading;
+        how.assumed = first ? 2 * empty_ : -1;
+        map(recorder, how, l, {now(l), at(l, extinction)}, {at(l, resistance)});
+        for (std::size_t c = l + 1; c < levels_.size(); ++c) {
+            map(recorder, kernels::scatter_average{}, c, {at(c - 1, resistance)},
+                {at(c, resistance)});
+        }
+    }
+
+    void source(typename B::recorder& recorder, std::size_t l) {
+        const scattering_medium& m = options_.medium;
+        kernels::scatter_source how;
+        how.moment = 3 * m.albedo * (m.mean_cosine - m.forward) / levels_[l].side.y;
+        map(recorder, how, l, {at(l, scattered), at(l, beam), at(l, extinction), at(l, resistance)},
+            {at(l, lit)});
+    }
+
+    /// New resistances and sources for the fluence so far, and a V-cycle.
+    void improve(typename B::recorder& recorder, std::size_t l) {
+        limit(recorder, l, false);
+        source(recorder, l);
+        cycle(recorder, l, true);
+        relax(recorder, l, 0.8f, false, 0);
+    }
+
+    [[nodiscard]] kernels::scatter_equation equation(std::size_t l) const {
+        return {glm::vec4(levels_[l].side, empty_), 1 - options_.medium.albedo};
+    }
+
+    void relax(typename B::recorder& recorder, std::size_t l, float weight, bool from_zero,
+               float least) {
+        const kernels::scatter_relax how{equation(l), weight, from_zero ? 1u : 0u, least};
+        map(recorder, how, l, {now(l), at(l, resistance), at(l, extinction), at(l, lit)},
+            {next(l)});
+        swap(l);
+    }
+
+    /// Chebyshev's two steps for errors that a grid of twice the sides can't hold: of eigenvalues
+    /// 1/3…2 of the Jacobi step nothing above 0.34 remains.
+    void smooth(typename B::recorder& recorder, std::size_t l, bool from_zero) {
+        relax(recorder, l, 0.5695f, from_zero, unbounded);
+        relax(recorder, l, 1.73f, false, unbounded);
+    }
+
+    void prolong(typename B::recorder& recorder, std::size_t l, bool from_zero) {
+        const kernels::scatter_prolong how{from_zero ? 1u : 0u};
+        map(recorder, how, l, {now(l), now(l + 1)}, {next(l)});
+        swap(l);
+    }
+
+    void cycle(typename B::recorder& recorder, std::size_t l, bool guessed) {
+        if (l + 1 == levels_.size()) {
+            relax(recorder, l, 1, !guessed, unbounded); // one cell: exact
+            return;
+        }
+        smooth(recorder, l, !guessed);
+        map(recorder, kernels::scatter_restrict{equation(l)}, l + 1,
+            {now(l), at(l, resistance), at(l, extinction), at(l, lit)}, {at(l + 1, lit)});
+        cycle(recorder, l + 1, false);
+        prolong(recorder, l, false);
+        smooth(recorder, l, false);
+    }
+
+    static constexpr float unbounded = -3e38f;
+    multiple_scattering_options options_;
+    glm::uvec3 voxels_{0};
+    float empty_ = 0;
+    std::vector<level> levels_; ///< from fine to coarse; the last one is a single cell
+};
+
+} // namespace skybark::clouds
