@@ -224,6 +224,15 @@ TEST(path_tracer, slab_of_van_de_hulst) {
     EXPECT_LT(found->transmission.standard_error, 1e-3);
 }
 
+// Thick, isotropic and conservative: T = 4/3 K(1) / (τ + 2 q) but for terms like e^{−τ}, with
+// K(1) = √3/4 H(1), H(1) = 2.90781 (Chandrasekhar 1950) and Hopf's q = 0.710446.
+TEST(path_tracer, thick_slab_of_published_constants) {
+    const auto found =
+        clouds::trace_slab(12, 1, phase_function::isotropic(), 1, with_paths(100'000));
+    const double exact = 4.0 / 3 * std::sqrt(3.0) / 4 * 2.90781 / (12 + 2 * 0.710446);
+    expect_within_three(found->transmission, exact, 1e-5 * exact, "T");
+}
+
 // A cloud lets through like 1/τ: 0.958 at depth 1, 0.641 at 8 (g = 0.85, nothing absorbed).
 TEST(path_tracer, clouds_let_through_far_more_than_an_exponential) {
     const auto phase = phase_function::henyey_greenstein(0.85);
@@ -583,5 +592,10 @@ TEST(path_tracer, bad_input_is_refused_in_a_sentence) {
                                        light_grid{.row_x = {0, 0, 0, 0}}, glm::uvec3(2)));
     const clouds::camera_ray rays[] = {{dvec3(0), dvec3(0, 0, 0)}};
     EXPECT_FALSE(clouds::trace_radiance(*cloud, isotropic, dvec3(0, 1, 0), rays));
+    const clouds::camera_ray nowhere[] = {{dvec3(none), dvec3(0, 0, 1)}};
+    EXPECT_FALSE(clouds::trace_radiance(*cloud, isotropic, dvec3(0, 1, 0), nowhere));
     EXPECT_TRUE(clouds::trace_radiance(*cloud, isotropic, dvec3(0, 1, 0), {})->empty());
+    light_grid lost = grid;
+    lost.anchor.x = float(none);
+    EXPECT_FALSE(clouds::trace_fluence(*cloud, isotropic, dvec3(0, 1, 0), lost, glm::uvec3(2)));
 }

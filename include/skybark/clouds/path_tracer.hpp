@@ -114,6 +114,9 @@ namespace detail {
     return glm::normalize(sine * (std::cos(angle) * s + std::sin(angle) * t) + cosine * d);
 }
 
+/// Within 10,000 km of the world's origin, and a number.
+[[nodiscard]] inline bool within_reach(const glm::dvec3& p) { return glm::dot(p, p) < 1e14; }
+
 [[nodiscard]] inline bool unit_vector(const glm::dvec3& d) {
     return std::abs(glm::dot(d, d) - 1) < 1e-6;
 }
@@ -423,7 +426,7 @@ template <medium M>
 /// The fluence that sunlight from the unit vector `to_sun` makes in the voxels of a grid, averaged
 /// over each: the lengths that paths fly in it. The grid need not hold the cloud, nor be turned
 /// towards the sun. Errors: bad_input where `to_sun` is no unit vector; out_of_memory for more than
-/// 2^27 voxels.
+/// 2^24 voxels.
 template <medium M>
 [[nodiscard]] result<fluence_field>
 trace_fluence(const M& in, const phase_function& phase, const glm::dvec3& to_sun,
@@ -432,18 +435,19 @@ trace_fluence(const M& in, const phase_function& phase, const glm::dvec3& to_sun
     if (!per_batch) {
         return failure(per_batch.error());
     }
-    constexpr std::uint64_t most = 1u << 27;
+    constexpr std::uint64_t most = 1u << 24;
     if (voxels.x > most || voxels.y > most || voxels.z > most ||
         std::uint64_t{voxels.x} * voxels.y > most ||
         std::uint64_t{voxels.x} * voxels.y * voxels.z > most) {
         return fail(error_code::out_of_memory,
                     std::string("Fluence in ") + std::to_string(voxels.x) + " x " +
                         std::to_string(voxels.y) + " x " + std::to_string(voxels.z) +
-                        " voxels is more than the 2^27 that can be traced.");
+                        " voxels is more than the 2^24 that can be traced.");
     }
     const detail::voxel_frame frame(grid, voxels);
     if (!detail::unit_vector(to_sun) || voxels.x == 0 || voxels.y == 0 || voxels.z == 0 ||
-        !(frame.volume() > 0 && frame.volume() < 1e30)) {
+        !(frame.volume() > 0 && frame.volume() < 1e30) || !detail::within_reach(frame.corner(0)) ||
+        !detail::within_reach(frame.corner(7))) {
         return fail(error_code::bad_input, "To trace fluence takes a unit vector to the sun and a "
                                            "grid of at least one voxel with a volume.");
     }
@@ -514,10 +518,11 @@ trace_radiance(const M& in, const phase_function& phase, const glm::dvec3& to_su
                std::span<const camera_ray> rays, double sky = 0, const path_options& options = {}) {
     if (!detail::unit_vector(to_sun) || options.paths < 2 ||
         options.paths > (std::uint64_t{1} << 32) ||
-        !std::all_of(rays.begin(), rays.end(),
-                     [](const camera_ray& r) { return detail::unit_vector(r.to); })) {
-        return fail(error_code::bad_input,
-                    "To trace rays takes unit vectors and 2 to 2^32 paths a ray.");
+        !std::all_of(rays.begin(), rays.end(), [](const camera_ray& r) {
+            return detail::unit_vector(r.to) && detail::within_reach(r.origin);
+        })) {
+        return fail(error_code::bad_input, "To trace rays takes unit vectors, origins within 1e7 m "
+                                           "and 2 to 2^32 paths a ray.");
     }
     std::vector<estimate> out(rays.size());
     if (rays.empty()) {
