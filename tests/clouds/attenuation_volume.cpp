@@ -384,6 +384,24 @@ TEST(attenuation_accuracy, backends_agree) {
     }
 }
 
+TEST(attenuation_accuracy, volumes_larger_than_a_binding) {
+    // 384³ floats are 216 MiB; lavapipe binds 128 MiB of a buffer at most.
+    cpu::device reference;
+    const auto particles = ball(300, 0.05f, 0.2f, 1.5f, 15);
+    const glm::uvec3 voxels(384);
+    const auto way = with(attenuation_method::impulse_scan, attenuation_profile::step);
+    const auto expected = cold(reference, particles, slanting, voxels, way);
+    support::with_device("vulkan", [&](auto& device) {
+        const auto values = cold(device, particles, slanting, voxels, way);
+        ASSERT_EQ(values.size(), expected.size());
+        double worst = 0;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            worst = std::max(worst, std::abs(double(values[i]) - double(expected[i])));
+        }
+        EXPECT_LE(worst, 1e-4);
+    });
+}
+
 TEST(attenuation_accuracy, product_is_the_documents) {
     // One particle: G on its axis is e^−τ + a τ f, amplifying where f is sharp (METHODS: a thick
     // particle can amplify light).
