@@ -28,6 +28,9 @@ struct description {
     bool (*make_current)(void* user) = nullptr;
     /// Optional: kept until the device is gone.
     std::shared_ptr<void> owner;
+    /// The most that a texture may take which a drawn accumulation draws into. Layers of a volume
+    /// that would need more are drawn in several turns.
+    std::uint64_t max_target_bytes = std::uint64_t{1} << 30;
 };
 
 namespace detail {
@@ -150,7 +153,8 @@ class context {
 
     gl::functions gl;
     device_limits limits;
-    std::uint32_t max_layers = 0; ///< of a framebuffer
+    std::uint32_t max_layers = 0;       ///< of a framebuffer
+    std::uint64_t max_target_bytes = 0; ///< as described
     device_traffic traffic;
     shared_objects objects;
     std::string renderer;
@@ -291,6 +295,7 @@ inline result<void> context::require_limits() {
     limits.accumulate_routes =
         route_bit(accumulate_route::direct) | route_bit(accumulate_route::tiles_copied) |
         route_bit(accumulate_route::tiles_drawn) | route_bit(accumulate_route::layers);
+    max_target_bytes = description_.max_target_bytes;
     max_layers = static_cast<std::uint32_t>(integer(gl::max_framebuffer_layers));
     parameter_stride_ = static_cast<std::uint32_t>(
         std::max(int{parameter_bytes}, integer(gl::uniform_buffer_offset_alignment)));

@@ -37,8 +37,6 @@ inline constexpr std::uint32_t layers_unit = 6;
 
 /// One less than 2¹⁷: what is left of a carry counts like one more amount.
 inline constexpr std::uint32_t exact_rectangles = (1u << 17) - 1;
-/// Layers that would make a larger target are drawn in several turns.
-inline constexpr std::uint64_t max_target_bytes = std::uint64_t{1} << 30;
 inline constexpr std::uint64_t sum_bytes = 8;
 /// Of one invocation of the geometry stage: four vertices of seven components each, of 1,024.
 inline constexpr std::uint32_t max_rectangles_a_point = 32;
@@ -61,7 +59,7 @@ struct layer_plan {
     layer_plan plan;
     plan.layer = {size.width, size.height};
     plan.layers = static_cast<std::uint32_t>(
-        std::clamp<std::uint64_t>(max_target_bytes / bytes, 1, size.depth));
+        std::clamp<std::uint64_t>(c.max_target_bytes / bytes, 1, size.depth));
     plan.target = plan.layer;
     if (route == accumulate_route::layers) {
         plan.layers = std::min(plan.layers, c.max_layers);
