@@ -58,7 +58,7 @@ struct cloud_picture_options {
     scene.camera = glm::vec4(eye, 0);
     scene.sky =
         daylight(direction_to_sun(options.sun_azimuth, options.sun_elevation), options.turbidity);
-    set_ambient(scene, glm::vec3(0.10f, 0.12f, 0.05f));
+    set_ambient(scene, glm::vec3(0.12f, 0.125f, 0.085f));
     return scene;
 }
 
