@@ -1,6 +1,6 @@
 #pragma once
 // light_at_points: what an attenuation volume says of single places: how much lies between them and
-// the sun, and what light comes through.
+// the sun, and what light comes through; and light that a cloud has scattered, where it is known.
 
 #include <skybark/core/kernel.hpp>
 #include <skybark/shared/light_at_points.hpp>
@@ -9,48 +9,55 @@
 
 namespace skybark::kernels {
 
-/// Buffers: places (xyz, m); found: x: attenuation, y: light over that of the sun, z and w: 0. Maps
-/// over places. Volume 0: attenuation.
+/// Buffers: places (xyz, m); found: x: attenuation, y: light over that of the sun, z: the part of
+/// it that was scattered more than once, w: 0. Maps over places. Volumes: attenuation; diffuse
+/// fluence over the sun's irradiance, or any where `diffuse` is 0.
 ///
 /// Between the middles of eight voxels it is linear along each axis, by whole floats: what filters
 /// of textures do has fewer digits on some devices. Above the box and beside it nothing is taken
-/// out; below it, and within half a voxel of its bottom, the undermost layer goes on.
+/// out, and nothing scattered; below it, and within half a voxel of its bottom, the undermost layer
+/// goes on.
 struct light_at_points {
     using buffers = buffer_list<readonly<glm::vec4>, writeonly<glm::vec4>>;
-    static constexpr std::uint32_t volumes = 1;
+    static constexpr std::uint32_t volumes = 2;
 
-    light_grid grid;
+    light_grid grid; ///< of the attenuation
     /// 1: light is e^−attenuation. More: Wrenninge's octaves without their phase function, their
     /// mean by weight: Σ wⁱ e^(−bⁱ attenuation) / Σ wⁱ.
     std::uint32_t octaves = 1;
     float octave_weight = 0.5f;      ///< w
     float octave_attenuation = 0.5f; ///< b
+    float diffuse = 0; ///< cells of the fluence in a voxel of the attenuation; 0: no fluence
 
     template <class Grids>
     void map(std::uint32_t i, const Grids& grids, std::span<const glm::vec4> places,
              std::span<glm::vec4> found) const {
         const glm::vec3 cells = shared::cells_of(grid, glm::vec3(places[i]));
-        const float attenuation = attenuation_at(grids, cells);
-        found[i] = glm::vec4(
-            attenuation,
-            shared::octaves_light(attenuation, octaves, octave_weight, octave_attenuation), 0.0f,
-            0.0f);
+        const float attenuation = value_at(grids, 0, cells, grids.size(0));
+        const float light =
+            shared::octaves_light(attenuation, octaves, octave_weight, octave_attenuation);
+        const float scattered =
+            diffuse > 0.0f ? value_at(grids, 1, cells * diffuse, glm::vec3(grids.size(0)) * diffuse)
+                           : 0.0f;
+        found[i] = glm::vec4(attenuation, light + scattered, scattered, 0.0f);
     }
 
   private:
+    /// Of volume `n`, whose cells end at `ends`; 0 above and beside.
     template <class Grids>
-    [[nodiscard]] static float attenuation_at(const Grids& grids, glm::vec3 cells) {
-        const glm::ivec3 size = grids.size(0);
-        if (!(cells.x >= 0.0f && cells.x <= static_cast<float>(size.x) && cells.z >= 0.0f &&
-              cells.z <= static_cast<float>(size.z) && cells.y <= static_cast<float>(size.y))) {
+    [[nodiscard]] static float value_at(const Grids& grids, std::uint32_t n, glm::vec3 cells,
+                                        glm::vec3 ends) {
+        if (!(cells.x >= 0.0f && cells.x <= ends.x && cells.z >= 0.0f && cells.z <= ends.z &&
+              cells.y <= ends.y)) {
             return 0.0f;
         }
+        const glm::ivec3 last = grids.size(n) - 1;
         const glm::vec3 from(cells.x - 0.5f, glm::max(cells.y - 0.5f, 0.0f), cells.z - 0.5f);
         const glm::vec3 first(std::floor(from.x), std::floor(from.y), std::floor(from.z));
         const glm::vec3 part(from.x - first.x, from.y - first.y, from.z - first.z);
         const auto at = [&](int x, int y, int z) {
             return grids.load(
-                0, glm::clamp(glm::ivec3(first) + glm::ivec3(x, y, z), glm::ivec3(0), size - 1));
+                n, glm::clamp(glm::ivec3(first) + glm::ivec3(x, y, z), glm::ivec3(0), last));
         };
         const float low =
             shared::bilinear(at(0, 0, 0), at(1, 0, 0), at(0, 0, 1), at(1, 0, 1), part.x, part.z);
@@ -59,6 +66,6 @@ struct light_at_points {
         return low + (high - low) * part.y;
     }
 };
-static_assert(sizeof(light_at_points) == 92);
+static_assert(sizeof(light_at_points) == 96);
 
 } // namespace skybark::kernels

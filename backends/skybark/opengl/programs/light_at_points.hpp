@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c03c6ab26831b242bd83c337c2cb290076778eb5c0bf2e78c5e5906b53b762a2
+// sha256 1f394598acd6b2111e2a0cae4084c120f937a605762163dd356dbfd11257d45e
 #pragma once
 
 #include <skybark/kernels/light_at_points.hpp>
@@ -14,7 +14,7 @@ struct program<kernels::light_at_points> {
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 64) in;
-#define KERNEL_VOLUMES 1
+#define KERNEL_VOLUMES 2
 struct surface_vertex {
     vec3 position;
     float u;
@@ -78,7 +78,7 @@ struct light_grid {
     vec4 row_z;
     vec4 voxel;
 };
-#define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation;
+#define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation; float diffuse;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -263,32 +263,38 @@ float octaves_light(float attenuation, uint octaves, float weight, float part) {
 }
 layout(std430, binding = 0) readonly buffer places_buffer { vec4 places[]; };
 layout(std430, binding = 1) writeonly buffer found_buffer { vec4 found[]; };
-float voxel_at(ivec3 at, ivec3 size) {
-    return texelFetch(kernel_volumes[0], clamp(at, ivec3(0), size - ivec3(1)), 0).x;
+ivec3 size_of(int n) {
+    return n == 0 ? textureSize(kernel_volumes[0], 0) : textureSize(kernel_volumes[1], 0);
 }
-float attenuation_at(vec3 cells) {
-    ivec3 size = textureSize(kernel_volumes[0], 0);
-    if (!(cells.x >= 0.0 && cells.x <= float(size.x) && cells.z >= 0.0 &&
-          cells.z <= float(size.z) && cells.y <= float(size.y))) {
+float voxel_at(int n, ivec3 at) {
+    ivec3 inside = clamp(at, ivec3(0), size_of(n) - ivec3(1));
+    return n == 0 ? texelFetch(kernel_volumes[0], inside, 0).x
+                  : texelFetch(kernel_volumes[1], inside, 0).x;
+}
+float value_at(int n, vec3 cells, vec3 ends) {
+    if (!(cells.x >= 0.0 && cells.x <= ends.x && cells.z >= 0.0 && cells.z <= ends.z &&
+          cells.y <= ends.y)) {
         return 0.0;
     }
     vec3 from = vec3(cells.x - 0.5, max(cells.y - 0.5, 0.0), cells.z - 0.5);
     vec3 first = floor(from);
     vec3 part = from - first;
     ivec3 at = ivec3(first);
-    float low = bilinear(voxel_at(at, size), voxel_at(at + ivec3(1, 0, 0), size),
-                         voxel_at(at + ivec3(0, 0, 1), size), voxel_at(at + ivec3(1, 0, 1), size),
+    float low = bilinear(voxel_at(n, at), voxel_at(n, at + ivec3(1, 0, 0)),
+                         voxel_at(n, at + ivec3(0, 0, 1)), voxel_at(n, at + ivec3(1, 0, 1)),
                          part.x, part.z);
-    float high = bilinear(voxel_at(at + ivec3(0, 1, 0), size), voxel_at(at + ivec3(1, 1, 0), size),
-                          voxel_at(at + ivec3(0, 1, 1), size), voxel_at(at + ivec3(1, 1, 1), size),
+    float high = bilinear(voxel_at(n, at + ivec3(0, 1, 0)), voxel_at(n, at + ivec3(1, 1, 0)),
+                          voxel_at(n, at + ivec3(0, 1, 1)), voxel_at(n, at + ivec3(1, 1, 1)),
                           part.x, part.z);
     return low + (high - low) * part.y;
 }
 void kernel_map(uint i) {
-    float attenuation = attenuation_at(cells_of(grid, places[i].xyz));
-    found[i] = vec4(attenuation,
-                    octaves_light(attenuation, octaves, octave_weight, octave_attenuation), 0.0,
-                    0.0);
+    vec3 cells = cells_of(grid, places[i].xyz);
+    vec3 size = vec3(size_of(0));
+    float attenuation = value_at(0, cells, size);
+    float light = octaves_light(attenuation, octaves, octave_weight, octave_attenuation);
+    float scattered = diffuse > 0.0 ? value_at(1, cells * diffuse, size * diffuse) : 0.0;
+    found[i] = vec4(attenuation, light + scattered, scattered, 0.0);
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
@@ -309,7 +315,7 @@ void main() {
 #define writeonly coherent writeonly
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 256) in;
-#define KERNEL_VOLUMES 1
+#define KERNEL_VOLUMES 2
 struct surface_vertex {
     vec3 position;
     float u;
@@ -373,7 +379,7 @@ struct light_grid {
     vec4 row_z;
     vec4 voxel;
 };
-#define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation;
+#define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation; float diffuse;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -558,32 +564,38 @@ float octaves_light(float attenuation, uint octaves, float weight, float part) {
 }
 layout(std430, binding = 0) readonly buffer places_buffer { vec4 places[]; };
 layout(std430, binding = 1) writeonly buffer found_buffer { vec4 found[]; };
-float voxel_at(ivec3 at, ivec3 size) {
-    return texelFetch(kernel_volumes[0], clamp(at, ivec3(0), size - ivec3(1)), 0).x;
+ivec3 size_of(int n) {
+    return n == 0 ? textureSize(kernel_volumes[0], 0) : textureSize(kernel_volumes[1], 0);
 }
-float attenuation_at(vec3 cells) {
-    ivec3 size = textureSize(kernel_volumes[0], 0);
-    if (!(cells.x >= 0.0 && cells.x <= float(size.x) && cells.z >= 0.0 &&
-          cells.z <= float(size.z) && cells.y <= float(size.y))) {
+float voxel_at(int n, ivec3 at) {
+    ivec3 inside = clamp(at, ivec3(0), size_of(n) - ivec3(1));
+    return n == 0 ? texelFetch(kernel_volumes[0], inside, 0).x
+                  : texelFetch(kernel_volumes[1], inside, 0).x;
+}
+float value_at(int n, vec3 cells, vec3 ends) {
+    if (!(cells.x >= 0.0 && cells.x <= ends.x && cells.z >= 0.0 && cells.z <= ends.z &&
+          cells.y <= ends.y)) {
         return 0.0;
     }
     vec3 from = vec3(cells.x - 0.5, max(cells.y - 0.5, 0.0), cells.z - 0.5);
     vec3 first = floor(from);
     vec3 part = from - first;
     ivec3 at = ivec3(first);
-    float low = bilinear(voxel_at(at, size), voxel_at(at + ivec3(1, 0, 0), size),
-                         voxel_at(at + ivec3(0, 0, 1), size), voxel_at(at + ivec3(1, 0, 1), size),
+    float low = bilinear(voxel_at(n, at), voxel_at(n, at + ivec3(1, 0, 0)),
+                         voxel_at(n, at + ivec3(0, 0, 1)), voxel_at(n, at + ivec3(1, 0, 1)),
                          part.x, part.z);
-    float high = bilinear(voxel_at(at + ivec3(0, 1, 0), size), voxel_at(at + ivec3(1, 1, 0), size),
-                          voxel_at(at + ivec3(0, 1, 1), size), voxel_at(at + ivec3(1, 1, 1), size),
+    float high = bilinear(voxel_at(n, at + ivec3(0, 1, 0)), voxel_at(n, at + ivec3(1, 1, 0)),
+                          voxel_at(n, at + ivec3(0, 1, 1)), voxel_at(n, at + ivec3(1, 1, 1)),
                           part.x, part.z);
     return low + (high - low) * part.y;
 }
 void kernel_map(uint i) {
-    float attenuation = attenuation_at(cells_of(grid, places[i].xyz));
-    found[i] = vec4(attenuation,
-                    octaves_light(attenuation, octaves, octave_weight, octave_attenuation), 0.0,
-                    0.0);
+    vec3 cells = cells_of(grid, places[i].xyz);
+    vec3 size = vec3(size_of(0));
+    float attenuation = value_at(0, cells, size);
+    float light = octaves_light(attenuation, octaves, octave_weight, octave_attenuation);
+    float scattered = diffuse > 0.0 ? value_at(1, cells * diffuse, size * diffuse) : 0.0;
+    found[i] = vec4(attenuation, light + scattered, scattered, 0.0);
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
 void main() {
