@@ -359,7 +359,7 @@ class recorder {
     void accumulate(const K& kernel, const bindings<device, K>& buffers, range elements,
                     const accumulation<device>& how) {
         with_spans<K>(buffers, [&](auto... spans) {
-            slab_bins<K, decltype(spans)...> bins(kernel, spans...);
+            typename bins_of<K, decltype(spans)...>::type bins(kernel, spans...);
             if (going() && !accumulate_layers(*device_, device_->layers_, bins, elements, *how.into,
                                               how.clear)) {
                 out_of_memory("accumulate");
@@ -377,7 +377,7 @@ class recorder {
     void accumulate_scan(const K& kernel, const bindings<device, K>& buffers, range elements,
                          const volume& scratch, const volume& to, const volume_scan& how) {
         with_spans<K>(buffers, [&](auto... spans) {
-            slab_bins<K, decltype(spans)...> bins(kernel, spans...);
+            typename bins_of<K, decltype(spans)...>::type bins(kernel, spans...);
             if (how.axis != scan_axis::y || elements.count > bins.batch()) {
                 accumulate(kernel, buffers, elements, accumulation<device>{&scratch, true, {}, {}});
                 scan(scratch, to, how);

@@ -16,7 +16,8 @@ namespace skybark::cpu {
 /// Memory that accumulations use again.
 struct layer_scratch {
     detail::scratch_memory counts; ///< slabs of a piece of the elements in a layer, later offsets
-    detail::scratch_memory slabs;
+    detail::scratch_memory slabs;  ///< by layer
+    detail::scratch_memory parts;  ///< what slabs have in common
     detail::scratch_memory planes; ///< a layer for each thread
 };
 
@@ -35,7 +36,8 @@ class slab_bins {
     /// False where there is no memory.
     template <class Device>
     [[nodiscard]] bool fill(Device& device, layer_scratch& scratch, range elements,
-                            std::uint32_t layers) {
+                            const volume_description& what) {
+        const std::uint32_t layers = what.depth;
         layers_ = layers;
         const std::uint32_t pieces =
             std::clamp(elements.count / least_of_piece, std::uint32_t{1}, most_pieces);
@@ -126,6 +128,16 @@ class slab_bins {
     program_slab* slabs_ = nullptr;
 };
 
+template <slab_kernel K, class... Spans>
+struct bins_of {
+    using type = slab_bins<K, Spans...>;
+};
+template <slab_kernel K, class... Spans>
+requires requires { typename program<K>::bins; }
+struct bins_of<K, Spans...> {
+    using type = typename program<K>::bins;
+};
+
 /// Adds the elements to a volume of int32; from zero, if so asked. False where there is no memory.
 template <class Device, class Bins>
 [[nodiscard]] bool accumulate_layers(Device& device, layer_scratch& scratch, Bins& bins,
@@ -136,12 +148,12 @@ template <class Device, class Bins>
     std::uint32_t done = 0;
     do {
         const range batch{elements.first + done, std::min(bins.batch(), elements.count - done)};
-        if (!bins.fill(device, scratch, batch, what.depth)) {
+        if (!bins.fill(device, scratch, batch, what)) {
             return false;
         }
         device.for_pieces(what.depth, 1, [&](std::uint64_t first, std::uint64_t count) {
             for (std::uint64_t z = first; z < first + count; ++z) {
-                const layer_sums to{sums + z * layer, what.width, what.height};
+                const layer_sums to{sums + z * layer, what.width, what.height, what.width};
                 if (clear && done == 0) {
                     std::fill_n(to.sums, layer, 0);
                 }
@@ -161,22 +173,28 @@ template <class Device, class Bins>
                                               const volume_scan& how) {
     const volume_description what = to.description();
     const std::uint64_t layer = std::uint64_t{what.width} * what.height;
-    const std::uint64_t plane = (layer + 15) / 16 * 16; // threads share no line of a cache
+    // Whole lines of the cache, which threads do not share, and no power of two from row to row,
+    // which would put a column into few of the cache's sets.
+    const std::uint32_t stride = (what.width + 15) / 16 * 16 + 16;
+    const std::uint64_t plane = std::uint64_t{stride} * what.height;
     const std::uint32_t workers = std::min(device.workers(), what.depth);
     auto* const planes = scratch.planes.room_for<std::int32_t>(plane * workers);
-    if (planes == nullptr || !bins.fill(device, scratch, elements, what.depth)) {
+    if (planes == nullptr || !bins.fill(device, scratch, elements, what)) {
         return false;
     }
     sums::with_step_from_int32(what.format, how.share, [&]<class Step>() {
         auto* const out = reinterpret_cast<typename Step::out*>(to.data());
         std::atomic<std::uint32_t> next{0};
         device.parallel(workers, [&](std::uint32_t worker) {
-            const layer_sums own{planes + worker * plane, what.width, what.height};
+            const layer_sums own{planes + worker * plane, what.width, what.height, stride};
+            std::fill_n(own.sums, plane, 0);
             for (std::uint32_t z = next++; z < what.depth; z = next++) {
-                std::fill_n(own.sums, layer, 0);
                 bins.add(z, own);
-                sums::layer_along_y<Step>(own.sums, out + z * layer, what, how);
+                sums::down_rows_and_clear<Step>(
+                    {own.sums, stride, what.height, what.width},
+                    {out + z * layer, what.width, what.height, what.width}, how);
             }
+            finish_streaming();
         });
     });
     return true;

@@ -14,6 +14,7 @@ struct layer_sums {
     std::int32_t* sums;
     std::uint32_t width;
     std::uint32_t height;
+    std::uint32_t stride; ///< from a row to the next
 
     /// Adds; what leaves the 32 bits comes back in at their other end, as on GPUs.
     void add(std::uint64_t at, std::int32_t amount) const {
@@ -24,7 +25,8 @@ struct layer_sums {
 
 /// What there is without a specialisation. One that says `keeps_what_it_counts` also has `keep`,
 /// which writes the triangles of a few elements to memory in the caches and counts them by that:
-/// for kernels whose count costs as much as their triangles.
+/// for kernels whose count costs as much as their triangles. One with a type `bins` accumulates by
+/// that in place of slab_bins (layers.hpp).
 template <class K>
 struct plain_program {
     /// Maps over consecutive elements. Where the kernel names volumes, the first of the spans is
@@ -64,7 +66,7 @@ struct plain_program {
             }
             for (int y = low; y < high; ++y) {
                 const std::uint64_t row =
-                    static_cast<std::uint64_t>(y) * to.width + static_cast<std::uint64_t>(x);
+                    static_cast<std::uint64_t>(y) * to.stride + static_cast<std::uint64_t>(x);
                 for (int i = 0; i < columns; ++i) {
                     to.add(row + static_cast<std::uint64_t>(i),
                            kernel.amount(element, lateral[i], y, spans...));
