@@ -1,5 +1,5 @@
 // The tables of docs/clouds.md: what profiles, cuts, rounding and one light value a particle cost.
-#include "../support/cloud_sums.hpp"
+#include "support/cloud_sums.hpp"
 
 #include <skybark/clouds/harris.hpp>
 #include <skybark/cpu/cpu.hpp>

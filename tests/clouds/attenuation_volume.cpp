@@ -1,7 +1,7 @@
 // The attenuation volume against sums in double precision, and what must not change it: the order
 // of the particles, how the cloud is cut, where it is turned, and what was lit before.
-#include "../support/cloud_sums.hpp"
-#include "../support/devices.hpp"
+#include "support/cloud_sums.hpp"
+#include "support/devices.hpp"
 
 #include <skybark/clouds/attenuation_volume.hpp>
 

@@ -1,5 +1,5 @@
 // The attenuation volume of a density grid, against line integrals in closed form.
-#include "../support/devices.hpp"
+#include "support/devices.hpp"
 
 #include <skybark/clouds/attenuation_volume.hpp>
 

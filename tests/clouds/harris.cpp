@@ -1,6 +1,6 @@
 // Harris's light pass: against the recurrence in double precision, and against the product form,
 // with which it must agree on the axis of particles that stand in line with the sun.
-#include "../support/devices.hpp"
+#include "support/devices.hpp"
 
 #include <skybark/clouds/attenuation_volume.hpp>
 #include <skybark/clouds/harris.hpp>
