@@ -3,6 +3,7 @@
 
 #include <picture/daylight.hpp>
 #include <skybark/clouds/cloud_billboards.hpp>
+#include <skybark/clouds/cloud_density.hpp>
 #include <skybark/core/backend.hpp>
 #include <skybark/kernels/clear_sky.hpp>
 #include <skybark/kernels/clouded_ground.hpp>
@@ -29,7 +30,7 @@ struct cloud_picture_options {
     double sun_elevation = 50;       ///< degrees
     double turbidity = 2.4;          ///< 2 very clear … 10 haze
     float air = 2.5e-5f;             ///< 1/m; what is 1/air away is hidden by 63 %
-    float exposure = 0.046f;         ///< display value 1 over radiance
+    std::optional<float> exposure;   ///< display value 1 over radiance; absent: by the daylight
     bool ground = true;
 };
 
@@ -62,6 +63,15 @@ struct cloud_picture_options {
     return scene;
 }
 
+/// The exposure of a picture in this light: less than in proportion, so that evenings are darker.
+[[nodiscard]] inline float exposure_for(const kernels::scene_record& scene) {
+    const glm::vec3 up(0, 1, 0);
+    const glm::vec3 white = kernels::ambient_of(scene, up) +
+                            glm::vec3(scene.sky.sunlight) * std::max(scene.sky.to_sun.y, 0.0f);
+    const float luminance = 0.2126f * white.x + 0.7152f * white.y + 0.0722f * white.z;
+    return 0.45f / std::pow(std::max(luminance, 0.01f), 0.7f);
+}
+
 /// Draws clouds, picture after picture, into images that it makes once.
 template <volume_backend B>
 class cloud_painter {
@@ -73,7 +83,11 @@ class cloud_painter {
         if (!puffs) {
             return failure(puffs.error());
         }
-        cloud_painter made(options, std::move(*puffs));
+        auto rays = clouds::cloud_density<B>::create(device);
+        if (!rays) {
+            return failure(rays.error());
+        }
+        cloud_painter made(options, std::move(*puffs), std::move(*rays));
         const std::uint32_t samples = std::max(1u, options.supersampling);
         const std::uint32_t width = options.width * samples;
         const std::uint32_t height = options.height * samples;
@@ -98,33 +112,23 @@ class cloud_painter {
     /// Appends the drawing of a picture: the sky, the ground at the height `ground` (m), its shadow
     /// by light.sun, and `count` particles. The lighting's `air` is that of the options.
     void record(typename B::recorder& to, const kernels::scene_record& scene,
-                const buffer_view<B>& particles, std::uint32_t count, clouds::cloud_light_sources<B> light,
-                float ground) const {
-        to.upload(view<B>(*scene_), std::as_bytes(std::span(&scene, 1)));
+                const buffer_view<B>& particles, std::uint32_t count,
+                clouds::cloud_light_sources<B> light, float ground) const {
         light.lighting.air = options_.air;
-        draw_target<B> picture{&images_[0], &images_[1], glm::vec4(0), 1.0f};
-        draw_geometry<B> screen;
-        screen.count = 3;
-        to.draw(kernels::clear_sky{}, {view<B>(*scene_)}, {}, screen, picture, draw_state{});
-        picture.clear_color.reset();
-        picture.clear_depth.reset();
-        if (options_.ground) {
-            draw_geometry<B> plane;
-            plane.count = 6;
-            kernels::clouded_ground country;
-            country.grid = light.lighting.sun_grid;
-            country.height = ground;
-            country.air = options_.air;
-            volume_bindings<B, kernels::clouded_ground> shadow;
-            shadow.read = {light.sun};
-            to.draw(country, {view<B>(*scene_)}, {}, shadow, plane, picture, draw_state{});
-        }
+        draw_surroundings(to, scene, light, ground);
         puffs_.record(to, particles, count, glm::vec3(scene.camera), view<B>(*scene_), light,
-                      picture);
-        const std::uint32_t samples = std::max(1u, options_.supersampling);
-        to.draw(kernels::develop{samples, options_.exposure}, {},
-                {sampled_image<B>{&images_[0], filter_mode::nearest, wrap_mode::clamp}}, screen,
-                draw_target<B>{&images_[2], nullptr, {}, {}}, draw_state{false, false});
+                      draw_target<B>{&images_[0], &images_[1], {}, {}});
+        show(to, scene);
+    }
+
+    /// The same with a grid of densities.
+    void record(typename B::recorder& to, const kernels::scene_record& scene,
+                const typename B::volume& density, const clouds::density_box& where,
+                clouds::cloud_light_sources<B> light, float ground) const {
+        light.lighting.air = options_.air;
+        draw_surroundings(to, scene, light, ground);
+        rays_.record(to, density, where, view<B>(*scene_), light, images_[0], images_[1]);
+        show(to, scene);
     }
 
     /// The picture: RGBA8 rows from the top.
@@ -140,11 +144,45 @@ class cloud_painter {
     [[nodiscard]] const cloud_picture_options& options() const { return options_; }
 
   private:
-    cloud_painter(const cloud_picture_options& options, clouds::cloud_billboards<B>&& puffs)
-        : options_(options), puffs_(std::move(puffs)) {}
+    cloud_painter(const cloud_picture_options& options, clouds::cloud_billboards<B>&& puffs,
+                  clouds::cloud_density<B>&& rays)
+        : options_(options), puffs_(std::move(puffs)), rays_(std::move(rays)) {}
+
+    void draw_surroundings(typename B::recorder& to, const kernels::scene_record& scene,
+                           const clouds::cloud_light_sources<B>& light, float ground) const {
+        to.upload(view<B>(*scene_), std::as_bytes(std::span(&scene, 1)));
+        draw_target<B> picture{&images_[0], &images_[1], glm::vec4(0), 1.0f};
+        draw_geometry<B> screen;
+        screen.count = 3;
+        to.draw(kernels::clear_sky{}, {view<B>(*scene_)}, {}, screen, picture, draw_state{});
+        if (options_.ground) {
+            picture.clear_color.reset();
+            picture.clear_depth.reset();
+            draw_geometry<B> plane;
+            plane.count = 6;
+            kernels::clouded_ground country;
+            country.grid = light.lighting.sun_grid;
+            country.height = ground;
+            country.air = options_.air;
+            volume_bindings<B, kernels::clouded_ground> shadow;
+            shadow.read = {light.sun};
+            to.draw(country, {view<B>(*scene_)}, {}, shadow, plane, picture, draw_state{});
+        }
+    }
+
+    void show(typename B::recorder& to, const kernels::scene_record& scene) const {
+        draw_geometry<B> screen;
+        screen.count = 3;
+        const std::uint32_t samples = std::max(1u, options_.supersampling);
+        const float exposure = options_.exposure.value_or(exposure_for(scene));
+        to.draw(kernels::develop{samples, exposure}, {},
+                {sampled_image<B>{&images_[0], filter_mode::nearest, wrap_mode::clamp}}, screen,
+                draw_target<B>{&images_[2], nullptr, {}, {}}, draw_state{false, false});
+    }
 
     cloud_picture_options options_;
     clouds::cloud_billboards<B> puffs_;
+    clouds::cloud_density<B> rays_;
     std::vector<typename B::image> images_; // samples, their depth, the picture
     std::optional<typename B::buffer> scene_;
 };
