@@ -7,5 +7,6 @@
 #include <skybark/cpu/hermite_branch.hpp>
 #include <skybark/cpu/leaf_blade.hpp>
 #include <skybark/cpu/particle_layers.hpp>
+#include <skybark/cpu/scatter.hpp>
 #include <skybark/cpu/sway.hpp>
 #include <skybark/cpu/wave_wind.hpp>

@@ -58,6 +58,18 @@ class grids {
         std::memcpy(to.data + 4 * to.index(at.x, at.y, at.z), &value, sizeof value);
     }
 
+    /// Where the voxels of a row along x lie in memory: of the n-th volume that is read, and of the
+    /// n-th target. Floats, if the volume is of float32.
+    [[nodiscard]] const std::byte* read_row(std::uint32_t n, int y, int z) const {
+        return read_[n].data + bytes_per_voxel(read_[n].format) * read_[n].index(0, y, z);
+    }
+    [[nodiscard]] bool reads_floats(std::uint32_t n) const {
+        return read_[n].format == volume_format::float32;
+    }
+    [[nodiscard]] std::byte* write_row(std::uint32_t n, int y, int z) const {
+        return write_[n].data + 4 * write_[n].index(0, y, z);
+    }
+
     // A fragment function reads its volumes under these names.
     [[nodiscard]] glm::ivec3 volume_size(std::uint32_t n) const { return size(n); }
     [[nodiscard]] float volume_load(std::uint32_t n, glm::ivec3 at) const { return load(n, at); }
