@@ -12,9 +12,11 @@ void kernel_voxel(ivec3 at) {
     ivec3 first = first_child(at, size);
     float left = 0.0;
     for (int c = 0; c < 8; ++c) {
-        ivec3 child = held(child_of(first, c, size), size);
-        scatter_balance sum = balance(child, false);
-        left += sum.gain - sum.loss * scatter_load(0, child);
+        ivec3 child = child_of(first, c, size);
+        if (within(child, size)) {
+            scatter_balance sum = balance(child, false);
+            left += sum.gain - sum.loss * scatter_load(0, child);
+        }
     }
     imageStore(kernel_targets[0], at, vec4(0.125 * left));
 }

@@ -6,8 +6,7 @@
 namespace skybark::kernels {
 
 /// No buffers. Volumes, of the finer grid: fluence, resistance, extinction, source. Target 0: the
-/// mean over eight cells of what the source has left over; where an odd grid ends, its last cells
-/// count twice.
+/// mean over eight cells of what the source has left over, nothing where an odd grid has ended.
 struct scatter_restrict {
     using buffers = buffer_list<>;
     static constexpr std::uint32_t volumes = 4;
@@ -21,9 +20,11 @@ struct scatter_restrict {
         const glm::ivec3 first = first_child(at, size);
         float left = 0;
         for (int c = 0; c < 8; ++c) {
-            const glm::ivec3 child = held(child_of(first, c, size), size);
-            const shared::scatter_balance sum = equation.balance(child, false, grids);
-            left += sum.gain - sum.loss * grids.load(0, child);
+            const glm::ivec3 child = child_of(first, c, size);
+            if (within(child, size)) {
+                const shared::scatter_balance sum = equation.balance(child, false, grids);
+                left += sum.gain - sum.loss * grids.load(0, child);
+            }
         }
         grids.store(0, at, 0.125f * left);
     }

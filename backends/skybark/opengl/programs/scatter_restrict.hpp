@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 34f2c2f14f040393da852bf0d24e4203094643610d73ce53aa5475e812224338
+// sha256 b2be7f4d4aa81648ea970a268fca87cc136e4b3716bec9d1d709a72ccd489212
 #pragma once
 
 #include <skybark/kernels/scatter_restrict.hpp>
@@ -120,9 +120,11 @@ void kernel_voxel(ivec3 at) {
     ivec3 first = first_child(at, size);
     float left = 0.0;
     for (int c = 0; c < 8; ++c) {
-        ivec3 child = held(child_of(first, c, size), size);
-        scatter_balance sum = balance(child, false);
-        left += sum.gain - sum.loss * scatter_load(0, child);
+        ivec3 child = child_of(first, c, size);
+        if (within(child, size)) {
+            scatter_balance sum = balance(child, false);
+            left += sum.gain - sum.loss * scatter_load(0, child);
+        }
     }
     imageStore(kernel_targets[0], at, vec4(0.125 * left));
 }
