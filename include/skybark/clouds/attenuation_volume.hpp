@@ -332,13 +332,3 @@ class attenuation_volume {
 };
 
 } // namespace skybark::clouds
-
-namespace skybark {
-using clouds::attenuation_method;
-using clouds::attenuation_profile;
-using clouds::attenuation_light;
-using clouds::polygon_source;
-using clouds::attenuation_options;
-using clouds::density_box;
-using clouds::attenuation_volume;
-} // namespace skybark

@@ -150,8 +150,3 @@ class harris_light {
 };
 
 } // namespace skybark::clouds
-
-namespace skybark {
-using clouds::harris_options;
-using clouds::harris_light;
-} // namespace skybark

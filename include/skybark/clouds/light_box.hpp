@@ -250,11 +250,3 @@ class column_depths {
 }
 
 } // namespace skybark::clouds
-
-namespace skybark {
-using clouds::light_box;
-using clouds::cloud_bounds;
-using clouds::finest_quantum;
-using clouds::check_particles;
-using clouds::fit_light_box;
-} // namespace skybark
