@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 202ff34ad795c34a0fcc59e657a9bcb76ad3cdf436b4ab6da4fe288cdf0b97ef
+// sha256 ad0f100a481b4ebf98e9eb0f2aec98df2de6b869b324ad7446c649590089a1ce
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -25,9 +25,10 @@ inline vec3 country_albedo(float x, float z, float far) {
     float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
     float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
     float fine = country_noise(x, z, 22.0f, 4.0f, far);
-    float trees = clamp((wood - 0.5f) * 7.0f, 0.0f, 1.0f);
+    float grain = country_noise(x, z, 3.5f, 5.0f, far);
+    float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
     float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
-    float shade = 0.75f + 0.5f * fine;
+    float shade = 0.5f + 0.5f * fine + 0.5f * grain;
     return vec3(mix(mix(0.095f, 0.190f, straw), 0.036f, trees) * shade,
                 mix(mix(0.125f, 0.165f, straw), 0.052f, trees) * shade,
                 mix(0.042f + 0.03f * straw, 0.024f, trees) * shade);

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 130bff14a5d75b2f35efa5e60c3b29cf688a9f557ba8c8190f9fe7ed0eef4b39
+// sha256 e9216b6b692ea0109e3d10ebd77be27f5c086c441bd047f5c48e3c2dc87dd46b
 #pragma once
 
 #include <skybark/kernels/clouded_ground.hpp>
@@ -270,12 +270,12 @@ float one_minus_exp(float x)
     p = 1.0f - x * (1.0f / 2.0f) * p;
     return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
-float log_one_plus(float u)
+float log_of_sum(float sum, float less_one)
 {
     float twos = 0.0f;
-    float less = u;
-    if (u < -0.25f || u > 0.4f) {
-        int bits = floatBitsToInt(1.0f + u);
+    float less = less_one;
+    if (less_one < -0.25f || less_one > 0.4f) {
+        int bits = floatBitsToInt(max(sum, 1.2e-38f));
         int power = (bits - 0x3f3504f3) >> 23;
         less = intBitsToFloat(bits - power * 8388608) - 1.0f;
         twos = float(power);
@@ -326,8 +326,9 @@ float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light,
         return 0.0f;
     }
     float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    if (light == 2u) {
-        return -log_one_plus(p.albedo * forward * tau - one_minus_exp(tau));
+    float on = p.albedo * forward * tau;
+    if (light == 2u && on > 0.0f) {
+        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
     }
     return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
@@ -372,9 +373,10 @@ vec3 country_albedo(float x, float z, float far) {
     float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
     float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
     float fine = country_noise(x, z, 22.0f, 4.0f, far);
-    float trees = clamp((wood - 0.5f) * 7.0f, 0.0f, 1.0f);
+    float grain = country_noise(x, z, 3.5f, 5.0f, far);
+    float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
     float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
-    float shade = 0.75f + 0.5f * fine;
+    float shade = 0.5f + 0.5f * fine + 0.5f * grain;
     return vec3(mix(mix(0.095f, 0.190f, straw), 0.036f, trees) * shade,
                 mix(mix(0.125f, 0.165f, straw), 0.052f, trees) * shade,
                 mix(0.042f + 0.03f * straw, 0.024f, trees) * shade);
@@ -703,12 +705,12 @@ float one_minus_exp(float x)
     p = 1.0f - x * (1.0f / 2.0f) * p;
     return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
-float log_one_plus(float u)
+float log_of_sum(float sum, float less_one)
 {
     float twos = 0.0f;
-    float less = u;
-    if (u < -0.25f || u > 0.4f) {
-        int bits = floatBitsToInt(1.0f + u);
+    float less = less_one;
+    if (less_one < -0.25f || less_one > 0.4f) {
+        int bits = floatBitsToInt(max(sum, 1.2e-38f));
         int power = (bits - 0x3f3504f3) >> 23;
         less = intBitsToFloat(bits - power * 8388608) - 1.0f;
         twos = float(power);
@@ -759,8 +761,9 @@ float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light,
         return 0.0f;
     }
     float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    if (light == 2u) {
-        return -log_one_plus(p.albedo * forward * tau - one_minus_exp(tau));
+    float on = p.albedo * forward * tau;
+    if (light == 2u && on > 0.0f) {
+        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
     }
     return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
@@ -805,9 +808,10 @@ vec3 country_albedo(float x, float z, float far) {
     float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
     float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
     float fine = country_noise(x, z, 22.0f, 4.0f, far);
-    float trees = clamp((wood - 0.5f) * 7.0f, 0.0f, 1.0f);
+    float grain = country_noise(x, z, 3.5f, 5.0f, far);
+    float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
     float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
-    float shade = 0.75f + 0.5f * fine;
+    float shade = 0.5f + 0.5f * fine + 0.5f * grain;
     return vec3(mix(mix(0.095f, 0.190f, straw), 0.036f, trees) * shade,
                 mix(mix(0.125f, 0.165f, straw), 0.052f, trees) * shade,
                 mix(0.042f + 0.03f * straw, 0.024f, trees) * shade);
