@@ -161,7 +161,8 @@ inline std::vector<cumulus_ball> cumulus_towers(cumulus_random& random, double h
         const glm::dvec2 out = t == 0 ? random.in_disc() * 0.25 : random.in_disc() * 0.72;
         const double edge = glm::length(out);
         const double height =
-            t == 0 ? thickness : thickness * (1 - 0.45 * edge * edge * edge) * random.between(0.45, 0.97);
+            t == 0 ? thickness
+                   : thickness * (1 - 0.45 * edge * edge * edge) * random.between(0.45, 0.97);
         const double wide =
             std::min(half * (t == 0 ? 0.36 : random.between(0.2, 0.32)), height * 0.48);
         const double narrow = wide * random.between(0.55, 0.8);
