@@ -360,14 +360,14 @@ struct named_method {
         {"tiles_copied", accumulate_route::tiles_copied},
         {"tiles_drawn", accumulate_route::tiles_drawn},
         {"layers", accumulate_route::layers}};
-    for (const auto& [name, route] : routes) {
+    for (const auto& named : routes) {
         for (const padding policy : {padding::compact, padding::degenerate}) {
             if (drawn) {
                 const char* padded = policy == padding::compact ? "_compact" : "_degenerate";
-                all.push_back(with(std::string("shadow_polygons_") + name + padded,
+                all.push_back(with(std::string("shadow_polygons_") + named.first + padded,
                                    method::shadow_polygons, [&](options& o) {
                                        o.polygons = clouds::polygon_source::stage;
-                                       o.route = route;
+                                       o.route = named.second;
                                        o.policy = policy;
                                    }));
             }
@@ -379,6 +379,13 @@ struct named_method {
 constexpr std::uint32_t particle_counts[] = {9382, 32914, 60134, 1000000};
 constexpr std::uint32_t volume_sides[] = {128, 256, 384};
 
+/// Voxels under the rectangles of a row: twice the radius wide and deep, and half as high as the
+/// volume.
+[[nodiscard]] double covered_voxels(const relight_row& row) {
+    const double wide = 0.002 * row.permille * row.side;
+    return 0.5 * row.particles * wide * wide * row.side;
+}
+
 template <volume_backend B>
 void add_table(const std::string& backend_name, named_method m, bool is_main) {
     for (const std::uint32_t count : particle_counts) {
@@ -386,10 +393,9 @@ void add_table(const std::string& backend_name, named_method m, bool is_main) {
             m.row.particles = count;
             m.row.side = side;
             m.row.against_harris = true;
-            // Voxels under rectangles: 6 % of the volume wide and deep, and half as high as it.
-            const double covered = 0.0018 * count * side * side * side;
-            const bool is_slow = (m.row.by == method::harris && count == 1000000) ||
-                                 (m.row.by == method::shadow_polygons && covered > 2e9);
+            const bool is_slow =
+                (m.row.by == method::harris && count == 1000000) ||
+                (m.row.by == method::shadow_polygons && covered_voxels(m.row) > 2e9);
             const bool is_typical =
                 (count == 60134 && side == 256) || (count == 9382 && side == 128);
             m.row.only_if_named = is_slow || !(is_main || is_typical);
@@ -403,19 +409,20 @@ void add_table(const std::string& backend_name, named_method m, bool is_main) {
 /// Rows for curves: one of particles, radius and voxels varies.
 template <volume_backend B>
 void add_curves(const std::string& backend_name, const named_method& m) {
-    const auto add_row = [&](const char* by, std::uint32_t value, relight_row row) {
-        add("clouds/by_" + std::string(by) + "/" + m.name + "_" + backend_name + "/" +
-                std::to_string(value),
-            relight<B>, row);
+    const auto add_row = [&](const char* by, std::uint32_t value, const relight_row& row) {
+        const bool takes_long = (row.by == method::harris && row.particles > 16000) ||
+                                (row.by == method::shadow_polygons && covered_voxels(row) > 3e8);
+        if (!takes_long) {
+            add("clouds/by_" + std::string(by) + "/" + m.name + "_" + backend_name + "/" +
+                    std::to_string(value),
+                relight<B>, row);
+        }
     };
-    const bool is_fast = m.row.by == method::impulse_scan;
     relight_row row = m.row;
     row.side = 128;
     for (const std::uint32_t count : {1000u, 4000u, 16000u, 64000u, 256000u, 1000000u}) {
         row.particles = count;
-        if (is_fast || count <= 64000) {
-            add_row("particles", count, row);
-        }
+        add_row("particles", count, row);
     }
     row.particles = 16000;
     for (const std::uint32_t permille : {10u, 15u, 20u, 30u, 45u, 60u, 80u}) {

@@ -353,16 +353,17 @@ void add_volume_scan_cases(cases<B>& to) {
                                                           {"x", scan_axis::x},
                                                           {"y", scan_axis::y},
                                                           {"z", scan_axis::z}};
-        for (const auto& [name, axis] : axes) {
+        for (const auto& named : axes) {
+            const std::string name = named.first;
+            const scan_axis axis = named.second;
             for (const auto direction : {scan_direction::ascending, scan_direction::descending}) {
                 const std::string along =
-                    std::string(name) +
-                    (direction == scan_direction::ascending ? "_ascending" : "_descending");
+                    name + (direction == scan_direction::ascending ? "_ascending" : "_descending");
                 add(along, [=](context<B>& c) { scan_formats(c, axis, direction); });
                 add(along + "_float_order",
                     [=](context<B>& c) { scan_float_order(c, axis, direction); });
             }
-            add(std::string(name) + "_sizes", [=](context<B>& c) { scan_sizes(c, axis); });
+            add(name + "_sizes", [=](context<B>& c) { scan_sizes(c, axis); });
         }
         add("large_sums_int32", [](context<B>& c) { scan_large_sums(c, volume_format::int32); });
         add("large_sums_float32",
