@@ -18,22 +18,28 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
 
+// Loops look at their end, not at their start, whether to go on: llvmpipe runs what is in a loop
+// once more, for no invocation at all, where they look at the start.
 void skybark_add(uint i, uint s, uint lane, ivec3 size) {
     voxel_slab slab = kernel_slab(i, s);
-    if (slab.slice < 0 || slab.slice >= size.z) {
-        return;
-    }
     ivec2 low = clamp(slab.low, ivec2(0), size.xy);
     ivec2 high = min(slab.high, size.xy);
-    for (int x = low.x + int(lane); x < high.x; x += int(skybark_header.z)) {
+    int x = low.x + int(lane);
+    if (slab.slice < 0 || slab.slice >= size.z || x >= high.x || low.y >= high.y) {
+        return;
+    }
+    do {
         float lateral = kernel_lateral(i, x, slab.slice);
-        for (int y = low.y; y < high.y; ++y) {
+        int y = low.y;
+        do {
             int amount = kernel_amount(i, lateral, y);
             if (amount != 0) { // an atomic addition is dear
                 imageAtomicAdd(skybark_sums, ivec3(x, y, slab.slice), amount);
             }
-        }
-    }
+            ++y;
+        } while (y < high.y);
+        x += int(skybark_header.z);
+    } while (x < high.x);
 }
 
 void main() {
@@ -49,10 +55,14 @@ void main() {
     if (k >= skybark_header.y || (counted && i >= skybark_length[0])) {
         return;
     }
-    uint first = (work - k * parts) * each;
-    uint last = min(first + each, kernel_slab_count(i));
-    ivec3 size = imageSize(skybark_sums);
-    for (uint s = first; s < last; ++s) {
-        skybark_add(i, s, lane, size);
+    uint s = (work - k * parts) * each;
+    uint last = min(s + each, kernel_slab_count(i));
+    if (s >= last) {
+        return;
     }
+    ivec3 size = imageSize(skybark_sums);
+    do {
+        skybark_add(i, s, lane, size);
+        ++s;
+    } while (s < last);
 }

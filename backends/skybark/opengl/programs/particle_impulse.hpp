@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 47d9ba4db654038c760eca3fb1dcea158b427ac689347df496cd2076f4d67409
+// sha256 9f3a1e2209dd7d44753295f01b9f99b3cd58910a53a857caa8e1db0e840241ce
 #pragma once
 
 #include <skybark/kernels/particle_impulse.hpp>
@@ -286,20 +286,24 @@ layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybar
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
 void skybark_add(uint i, uint s, uint lane, ivec3 size) {
     voxel_slab slab = kernel_slab(i, s);
-    if (slab.slice < 0 || slab.slice >= size.z) {
-        return;
-    }
     ivec2 low = clamp(slab.low, ivec2(0), size.xy);
     ivec2 high = min(slab.high, size.xy);
-    for (int x = low.x + int(lane); x < high.x; x += int(skybark_header.z)) {
+    int x = low.x + int(lane);
+    if (slab.slice < 0 || slab.slice >= size.z || x >= high.x || low.y >= high.y) {
+        return;
+    }
+    do {
         float lateral = kernel_lateral(i, x, slab.slice);
-        for (int y = low.y; y < high.y; ++y) {
+        int y = low.y;
+        do {
             int amount = kernel_amount(i, lateral, y);
             if (amount != 0) { // an atomic addition is dear
                 imageAtomicAdd(skybark_sums, ivec3(x, y, slab.slice), amount);
             }
-        }
-    }
+            ++y;
+        } while (y < high.y);
+        x += int(skybark_header.z);
+    } while (x < high.x);
 }
 void main() {
     uint each = skybark_header.w >> 16;
@@ -314,12 +318,16 @@ void main() {
     if (k >= skybark_header.y || (counted && i >= skybark_length[0])) {
         return;
     }
-    uint first = (work - k * parts) * each;
-    uint last = min(first + each, kernel_slab_count(i));
-    ivec3 size = imageSize(skybark_sums);
-    for (uint s = first; s < last; ++s) {
-        skybark_add(i, s, lane, size);
+    uint s = (work - k * parts) * each;
+    uint last = min(s + each, kernel_slab_count(i));
+    if (s >= last) {
+        return;
     }
+    ivec3 size = imageSize(skybark_sums);
+    do {
+        skybark_add(i, s, lane, size);
+        ++s;
+    } while (s < last);
 }
 )glsl";
     static constexpr std::string_view slabs_vert = R"glsl(#version 450

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 bafaf1336c07b8ea9efb33afa6df2a757b9dbcf2a18ce3f8b8ce8450a5003303
+// sha256 35950c21c9dc1b3299fc03447b03bcd434ea0e51599044262a10cc3cd74f079e
 #pragma once
 
 #include <skybark/kernels/probe_slabs.hpp>
@@ -83,20 +83,24 @@ layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybar
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
 void skybark_add(uint i, uint s, uint lane, ivec3 size) {
     voxel_slab slab = kernel_slab(i, s);
-    if (slab.slice < 0 || slab.slice >= size.z) {
-        return;
-    }
     ivec2 low = clamp(slab.low, ivec2(0), size.xy);
     ivec2 high = min(slab.high, size.xy);
-    for (int x = low.x + int(lane); x < high.x; x += int(skybark_header.z)) {
+    int x = low.x + int(lane);
+    if (slab.slice < 0 || slab.slice >= size.z || x >= high.x || low.y >= high.y) {
+        return;
+    }
+    do {
         float lateral = kernel_lateral(i, x, slab.slice);
-        for (int y = low.y; y < high.y; ++y) {
+        int y = low.y;
+        do {
             int amount = kernel_amount(i, lateral, y);
             if (amount != 0) { // an atomic addition is dear
                 imageAtomicAdd(skybark_sums, ivec3(x, y, slab.slice), amount);
             }
-        }
-    }
+            ++y;
+        } while (y < high.y);
+        x += int(skybark_header.z);
+    } while (x < high.x);
 }
 void main() {
     uint each = skybark_header.w >> 16;
@@ -111,12 +115,16 @@ void main() {
     if (k >= skybark_header.y || (counted && i >= skybark_length[0])) {
         return;
     }
-    uint first = (work - k * parts) * each;
-    uint last = min(first + each, kernel_slab_count(i));
-    ivec3 size = imageSize(skybark_sums);
-    for (uint s = first; s < last; ++s) {
-        skybark_add(i, s, lane, size);
+    uint s = (work - k * parts) * each;
+    uint last = min(s + each, kernel_slab_count(i));
+    if (s >= last) {
+        return;
     }
+    ivec3 size = imageSize(skybark_sums);
+    do {
+        skybark_add(i, s, lane, size);
+        ++s;
+    } while (s < last);
 }
 )glsl";
     static constexpr std::string_view slabs_vert = R"glsl(#version 450

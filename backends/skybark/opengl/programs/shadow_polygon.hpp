@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b366de7cf6ec2ff2264ca339020604e1840a5e1acf8bddfce4b677adf5af4812
+// sha256 82f806c8a4ad796eac021ce4cc4112a0f3820383cfd7df5a7ccc6d7c507de394
 #pragma once
 
 #include <skybark/kernels/shadow_polygon.hpp>
@@ -283,20 +283,24 @@ layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybar
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
 void skybark_add(uint i, uint s, uint lane, ivec3 size) {
     voxel_slab slab = kernel_slab(i, s);
-    if (slab.slice < 0 || slab.slice >= size.z) {
-        return;
-    }
     ivec2 low = clamp(slab.low, ivec2(0), size.xy);
     ivec2 high = min(slab.high, size.xy);
-    for (int x = low.x + int(lane); x < high.x; x += int(skybark_header.z)) {
+    int x = low.x + int(lane);
+    if (slab.slice < 0 || slab.slice >= size.z || x >= high.x || low.y >= high.y) {
+        return;
+    }
+    do {
         float lateral = kernel_lateral(i, x, slab.slice);
-        for (int y = low.y; y < high.y; ++y) {
+        int y = low.y;
+        do {
             int amount = kernel_amount(i, lateral, y);
             if (amount != 0) { // an atomic addition is dear
                 imageAtomicAdd(skybark_sums, ivec3(x, y, slab.slice), amount);
             }
-        }
-    }
+            ++y;
+        } while (y < high.y);
+        x += int(skybark_header.z);
+    } while (x < high.x);
 }
 void main() {
     uint each = skybark_header.w >> 16;
@@ -311,12 +315,16 @@ void main() {
     if (k >= skybark_header.y || (counted && i >= skybark_length[0])) {
         return;
     }
-    uint first = (work - k * parts) * each;
-    uint last = min(first + each, kernel_slab_count(i));
-    ivec3 size = imageSize(skybark_sums);
-    for (uint s = first; s < last; ++s) {
-        skybark_add(i, s, lane, size);
+    uint s = (work - k * parts) * each;
+    uint last = min(s + each, kernel_slab_count(i));
+    if (s >= last) {
+        return;
     }
+    ivec3 size = imageSize(skybark_sums);
+    do {
+        skybark_add(i, s, lane, size);
+        ++s;
+    } while (s < last);
 }
 )glsl";
     static constexpr std::string_view slabs_vert = R"glsl(#version 450
