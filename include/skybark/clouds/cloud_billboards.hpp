@@ -18,8 +18,11 @@
 #include <skybark/kernels/billboard_depth.hpp>
 #include <skybark/kernels/lit_puff.hpp>
 
+#include <cassert>
+#include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace skybark::clouds {
 
@@ -50,6 +53,13 @@ using kernels::cloud_lighting;
 inline void add_octaves(cloud_lighting& lighting, std::uint32_t count, float light = 0.5f,
                         float attenuation = 0.5f, float g = 0.5f) {
     lighting.octaves = glm::vec4(light, attenuation, g, static_cast<float>(count));
+}
+
+/// Light that was scattered more than once, from a volume that lies at `grid`: fluence over the
+/// sun's irradiance, as multiple_scattering has it.
+inline void add_diffuse(cloud_lighting& lighting, const light_grid& grid) {
+    lighting.diffuse_grid = grid;
+    lighting.diffuse = 0.25f * std::numbers::inv_pi_v<float>;
 }
 
 /// Light from the sky and the ground, by a volume of the same cloud whose sun stands in the zenith,

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 11ee6c10b385929c16d331ba209d2e75576137b24677f9d8dee2107394fe5a3c
+// sha256 69e10229ec5474b4ef78d7a6d45b35403363f37123e5e1bd667e4b4af432fba4
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -25,9 +25,9 @@ inline vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
 }
 
 // The light that an attenuation leaves. Negative attenuation (the document's product can amplify)
-// is light above 1.
+// is light above 1; beyond 1e26 it stays a number.
 inline float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(-attenuation) : exp_minus(attenuation);
+    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 
 } // namespace skybark::shared

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b1d827b99b29a1c31ec9a195d5dff87f3c56f61426897fd0b4762793565b1252
+// sha256 f123196c1d16cfb5c14c9a1908273066700ca0de5c149d428a8705679a4b1330
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>
@@ -240,7 +240,7 @@ vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
     return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(-attenuation) : exp_minus(attenuation);
+    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float phase_henyey_greenstein(float g, float u) {
     float a = 1.0f - g;
@@ -601,7 +601,7 @@ vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
     return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(-attenuation) : exp_minus(attenuation);
+    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float phase_henyey_greenstein(float g, float u) {
     float a = 1.0f - g;

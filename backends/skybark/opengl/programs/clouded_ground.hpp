@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 e9216b6b692ea0109e3d10ebd77be27f5c086c441bd047f5c48e3c2dc87dd46b
+// sha256 e5798a6a9236b7240e307eaa09b1e1e2ff7a3a473122c50dff422baf2800dda9
 #pragma once
 
 #include <skybark/kernels/clouded_ground.hpp>
@@ -359,7 +359,7 @@ vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
     return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(-attenuation) : exp_minus(attenuation);
+    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float country_noise(float x, float z, float size, float layer, float far) {
     float seen = clamp(2.0f - far / (300.0f * size), 0.0f, 1.0f);
@@ -794,7 +794,7 @@ vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
     return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(-attenuation) : exp_minus(attenuation);
+    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float country_noise(float x, float z, float size, float layer, float far) {
     float seen = clamp(2.0f - far / (300.0f * size), 0.0f, 1.0f);

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c1f457099c5ecfac3d53a71e10d17c4215177752f27c9d4e3bffaa62ab17304c
+// sha256 916a538565ee01e8ba64a4a8725c253a16868f5f65b73fe24737876bd8542d0b
 #pragma once
 
 #include <skybark/kernels/lit_grid.hpp>
@@ -360,7 +360,7 @@ vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
     return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(-attenuation) : exp_minus(attenuation);
+    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float phase_henyey_greenstein(float g, float u) {
     float a = 1.0f - g;
@@ -940,7 +940,7 @@ vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
     return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(-attenuation) : exp_minus(attenuation);
+    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float phase_henyey_greenstein(float g, float u) {
     float a = 1.0f - g;

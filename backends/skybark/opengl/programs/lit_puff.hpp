@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 00be118d29cdbd0822246128ccdaa3c72b9dde4714d3418f335c253298430ba7
+// sha256 b5484af59a4fe3321f673705fff301e282159fd14790c062dd2506dffcfe1d69
 #pragma once
 
 #include <skybark/kernels/lit_puff.hpp>
@@ -358,7 +358,7 @@ vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
     return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(-attenuation) : exp_minus(attenuation);
+    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float phase_henyey_greenstein(float g, float u) {
     float a = 1.0f - g;
@@ -956,7 +956,7 @@ vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
     return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(-attenuation) : exp_minus(attenuation);
+    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float phase_henyey_greenstein(float g, float u) {
     float a = 1.0f - g;

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d24f4a3c05035efdbc00514652b6c9c42340ddeb543199e0af72f40c3da1a4d4
+// sha256 71eef6f89b60aff5339e96e71f4f091e165e69bdea25d759f62bfadd7770cd5d
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>
