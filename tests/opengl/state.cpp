@@ -358,7 +358,7 @@ class volume_patterns {
         }
         after_("create_volume");
         const std::vector<float> voxels(120, 0.5f);
-        for (const std::size_t i : {2, 4}) {
+        for (const std::size_t i : {2u, 4u}) {
             EXPECT_TRUE(device_.upload(volumes_[i], std::as_bytes(std::span(voxels))));
         }
         after_("upload volume");

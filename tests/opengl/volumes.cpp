@@ -105,10 +105,20 @@ class volumes_test : public device_test {
         });
         return voxels<std::int32_t>(into);
     }
+    void expect_equal_sums();
 };
 
-TEST_F(volumes_test, every_route_and_padding_gives_the_same_sums) {
-    // Sides that are no multiples of anything, and 11 layers: 4 × 4 tiles, the last ones empty.
+TEST_F(volumes_test, every_route_and_padding_gives_the_same_sums) { expect_equal_sums(); }
+
+TEST_F(volumes_test, in_a_context_of_osmesa_as_well) {
+    start(headless_kind::osmesa);
+    if (owner && !IsSkipped()) {
+        expect_equal_sums();
+    }
+}
+
+void volumes_test::expect_equal_sums() {
+    // Sides that are no multiples of anything, and 11 layers: 4 × 3 tiles, the last one empty.
     const volume_description size{19, 13, 11, volume_format::int32};
     const volume into = make_volume(size);
     const auto boxes = scattered_boxes(500, size, 1);
@@ -209,7 +219,7 @@ TEST_F(volumes_test, amounts_as_large_as_an_int32) {
     for (const std::int32_t amount : {0x7fffffff, -0x7fffffff - 1, 0x7fffff80, 0x7fffff7f, -128,
                                       127, 128, -129, 0x1000000, 0x1000001}) {
         std::vector<std::int32_t> wanted(16);
-        for (const std::size_t i : {5, 6, 9, 10}) {
+        for (const std::size_t i : {5u, 6u, 9u, 10u}) {
             wanted[i] = amount;
         }
         for (const accumulate_route route : all_routes) {
