@@ -19,7 +19,8 @@ struct cloud_case {
     double least, most; ///< radius, voxels along x
     std::uint32_t count;
     float quantum = 0x1p-22f;
-    double deepest = 3; ///< optical depth
+    double deepest = 3;       ///< optical depth
+    std::uint32_t slices = 0; ///< more than there are: the particles go through in small batches
 };
 
 const cloud_case cases[] = {
@@ -32,6 +33,7 @@ const cloud_case cases[] = {
     {"a quantum that is no power of two", {32, 32, 32}, {1, 1, 1}, 1, 6, 200, 3e-6f},
     {"deep ones", {32, 32, 32}, {1, 1, 1}, 1, 6, 50, 0x1p-18f, 60},
     {"many for many threads", {48, 48, 48}, {1, 1, 1}, 0.5, 2, 20'000},
+    {"many batches", {48, 16, 16}, {1, 1, 1}, 0.5, 2, 1500, 0x1p-22f, 3, 1u << 22},
 };
 
 /// Turned against the world, with its middle in the middle of the volume.
@@ -104,8 +106,8 @@ void expect_plain_bits() {
         const auto fused = expect_value(d.create_volume(what));
         K kernel;
         kernel.shade.grid = grid_of(c);
-        kernel.shade.slices =
-            static_cast<std::uint32_t>(2 * c.most * double(c.sides.x / c.sides.z)) + 8;
+        kernel.shade.slices = std::max(
+            c.slices, static_cast<std::uint32_t>(2 * c.most * double(c.sides.x / c.sides.z)) + 8);
         for (kernel.shade.light = 0; kernel.shade.light < 3; ++kernel.shade.light) {
             for (kernel.shade.profile = 0; kernel.shade.profile < 2; ++kernel.shade.profile) {
                 kernel.shade.forward = kernel.shade.light == 2 ? 1.7f : 0.7f; // G > 1 as well

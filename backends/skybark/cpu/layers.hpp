@@ -190,11 +190,10 @@ template <class Device, class Bins>
             std::fill_n(own.sums, plane, 0);
             for (std::uint32_t z = next++; z < what.depth; z = next++) {
                 bins.add(z, own);
-                sums::down_rows_and_clear<Step>(
-                    {own.sums, stride, what.height, what.width},
+                sums::down_rows<Step>(
+                    sums::sheet<std::int32_t>{own.sums, stride, what.height, what.width},
                     {out + z * layer, what.width, what.height, what.width}, how);
             }
-            finish_streaming();
         });
     });
     return true;

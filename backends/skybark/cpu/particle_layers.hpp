@@ -1,11 +1,11 @@
 #pragma once
 // particle_impulse and shadow_slab, eight voxels of a row at a time.
 //
-// What a particle has in common for all its layers is made once, and sorted by height and by the
-// first layer that it cuts. A layer then goes from band to band of rows, so that the rows stay in
-// the nearest cache, and in each through the particles of its neighbourhood, which lie one after
-// another. The operations and their order are the kernels' own, so the bits are the same (a test
-// compares them). Without AVX2 the kernels' own functions run.
+// What a particle has in common for all its layers is made once, and sorted by the first layer that
+// it cuts; a layer then goes through the particles of its neighbourhood, which lie one after
+// another, and makes four times eight columns at once. The operations and their order are the
+// kernels' own, so the bits are the same (a test compares them). Without AVX2 the kernels' own
+// functions run.
 
 #include <skybark/cpu/eight.hpp>
 #include <skybark/cpu/layers.hpp>
@@ -71,16 +71,7 @@ class particle_bins {
             plain_.add(z, to);
             return;
         }
-        for (std::uint32_t band = 0; band < bands_; ++band) {
-            for (std::uint32_t c = 0; c < classes; ++c) {
-                if (most_[c].layers != 0) {
-                    const std::uint32_t from = z - std::min(z, most_[c].layers - 1);
-                    const std::uint32_t bin = (c * bands_ + band) * layers_;
-                    add_particles(c, bin == 0 && from == 0 ? 0 : ends_[bin + from - 1],
-                                  ends_[bin + z], static_cast<int>(z), to);
-                }
-            }
-        }
+        add_fast(z, to);
     }
 
   private:
@@ -128,14 +119,11 @@ class particle_bins {
         if (inside) {
             const auto span = static_cast<std::uint32_t>(c.end - low);
             const auto of = (static_cast<std::uint32_t>(std::bit_width(span)) - 1) / 2;
-            const auto band = static_cast<std::uint32_t>(std::min(c.top, height_ - 1)) / band_rows_;
-            c.bin = (of * bands_ + band) * layers_ + static_cast<std::uint32_t>(low);
+            c.bin = of * layers_ + static_cast<std::uint32_t>(low);
         }
         return c;
     }
-    [[nodiscard]] std::uint32_t class_of(std::uint32_t bin) const {
-        return bin / (bands_ * layers_);
-    }
+    [[nodiscard]] std::uint32_t class_of(std::uint32_t bin) const { return bin / layers_; }
 
     template <class Device>
     [[nodiscard]] bool sort(Device& device, layer_scratch& scratch, range elements,
@@ -143,9 +131,7 @@ class particle_bins {
         layers_ = what.depth;
         width_ = static_cast<std::int32_t>(what.width);
         height_ = static_cast<std::int32_t>(what.height);
-        band_rows_ = std::max(16u, (what.height + 31) / 32);
-        bands_ = (what.height + band_rows_ - 1) / band_rows_;
-        const std::uint32_t bins = classes * bands_ * layers_;
+        const std::uint32_t bins = classes * layers_;
         const std::uint32_t pieces =
             std::clamp(elements.count / least_of_piece, std::uint32_t{1}, most_pieces);
         const auto start = [&](std::uint32_t p) {
@@ -191,9 +177,8 @@ class particle_bins {
                 most_[c].layers = std::max(most_[c].layers, most[piece][c].layers);
                 most_[c].rows = std::max(most_[c].rows, most[piece][c].rows);
             }
-            first_of_[c] = counts[std::uint64_t{c} * bands_ * layers_];
-            const std::uint32_t next =
-                c + 1 < classes ? counts[(std::uint64_t{c} + 1) * bands_ * layers_] : sum;
+            first_of_[c] = counts[c * layers_];
+            const std::uint32_t next = c + 1 < classes ? counts[(c + 1) * layers_] : sum;
             // One more than between top and bottom, in whole eights; none where all end at once.
             most_[c].rows = most_[c].rows == 0 ? 0 : (most_[c].rows + 8) / 8 * 8;
             parts_of_[c] = parts;
@@ -244,24 +229,29 @@ class particle_bins {
         to.vectors = to.start < 0 ? 0 : static_cast<std::uint32_t>(columns) / 8;
         to.element = element;
         if (all.top > all.bottom) {
-            put_parts(to, at, parts_at(c, place));
+            put_parts(all, at, parts_at(c, place));
         }
     }
 
     /// What part of the particle lies above the rows from `top` downwards, `bottom` the last.
-    [[gnu::target("avx2")]] void put_parts(const layered_particle& p,
-                                           const kernels::particle_shade::placed& at,
+    [[gnu::target("avx2")]] void put_parts(const cut& p, const kernels::particle_shade::placed& at,
                                            float* parts) const {
         using namespace eight;
-        const f8 steps = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
-        const f8 bottom = splat(static_cast<float>(p.bottom));
-        for (std::int32_t row = p.top; row >= p.bottom; row -= 8) {
-            const f8 rows = minus(splat(static_cast<float>(row)), steps);
-            const f8 u =
-                times(over(minus(plus(rows, splat(0.5f)), splat(at.centre.y)), splat(at.radius.y)),
-                      splat(kernel_->shade.sigmas));
-            const f8 above = _mm256_cmp_ps(rows, bottom, _CMP_GT_OQ);
-            _mm256_storeu_ps(parts + (p.top - row), choose(above, gaussian_above(u), splat(1.0f)));
+        const std::int32_t count = p.top - p.bottom + 1;
+        for (std::int32_t done = 0; done < count; done += 32) {
+            const f8 first = plus(_mm256_set1_ps(static_cast<float>(p.top - done)),
+                                  _mm256_setr_ps(0, -1, -2, -3, -4, -5, -6, -7));
+            const f32 rows{first, minus(first, _mm256_set1_ps(8)), minus(first, _mm256_set1_ps(16)),
+                           minus(first, _mm256_set1_ps(24))};
+            const f32 height = minus(plus(rows, splat<f32>(0.5f)), splat<f32>(at.centre.y));
+            const f32 u =
+                times(over(height, splat<f32>(at.radius.y)), splat<f32>(kernel_->shade.sigmas));
+            const f32 above = less(splat<f32>(static_cast<float>(p.bottom)), rows);
+            const f32 part = choose(above, gaussian_above(u), splat<f32>(1.0f));
+            const f8 all[] = {part.a, part.b, part.c, part.d};
+            for (std::int32_t k = 0; k < 4 && done + 8 * k < count; ++k) {
+                _mm256_storeu_ps(parts + done + 8 * k, all[k]);
+            }
         }
     }
 
@@ -275,34 +265,57 @@ class particle_bins {
         std::uint32_t light;
     };
 
-    /// −ln G in quanta on lines through eight columns: particle_shade::lateral.
-    [[gnu::target("avx2")]] __m256 lateral(const layered_particle& p, float x, float dz2) const {
+    /// Eight columns of a particle in a layer.
+    struct job {
+        const layered_particle* particle;
+        const float* parts;
+        float dz2; ///< m²
+        std::int32_t column;
+    };
+    static constexpr std::size_t most_jobs = 64; ///< that wait: whole fours of them
+
+    /// −ln G in quanta on the lines through the columns of four jobs: particle_shade::lateral.
+    [[gnu::target("avx2")]] void lateral(const job* jobs, eight::f8* out) const {
         using namespace eight;
-        const shades& s = shades_;
-        const f8 columns = plus(splat(x), _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7));
-        const f8 dx = times(minus(plus(columns, splat(0.5f)), splat(p.x)), splat(s.width));
-        const f8 d2 = plus(times(dx, dx), splat(dz2));
-        const f8 r2 = splat(p.radius2);
-        const f8 tau =
-            times(splat(p.optical_depth), exp_minus(over(times(splat(s.decay), d2), r2)));
-        f8 amount;
-        if (s.light == 2) {
-            const f8 on = times(splat(p.kept), tau);
-            const f8 log = log_of_sum(plus(exp_minus(tau), on), minus(on, one_minus_exp(tau)));
-            amount = choose(less(splat(0.0f), on), _mm256_xor_ps(log, splat(-0.0f)), tau);
+        const layered_particle& pa = *jobs[0].particle;
+        const layered_particle& pb = *jobs[1].particle;
+        const layered_particle& pc = *jobs[2].particle;
+        const layered_particle& pd = *jobs[3].particle;
+        const f8 steps = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+        const f32 columns{plus(_mm256_set1_ps(static_cast<float>(jobs[0].column)), steps),
+                          plus(_mm256_set1_ps(static_cast<float>(jobs[1].column)), steps),
+                          plus(_mm256_set1_ps(static_cast<float>(jobs[2].column)), steps),
+                          plus(_mm256_set1_ps(static_cast<float>(jobs[3].column)), steps)};
+        const f32 x = each(pa.x, pb.x, pc.x, pd.x);
+        const f32 r2 = each(pa.radius2, pb.radius2, pc.radius2, pd.radius2);
+        const f32 dx = times(minus(plus(columns, splat<f32>(0.5f)), x), splat<f32>(shades_.width));
+        const f32 d2 =
+            plus(times(dx, dx), each(jobs[0].dz2, jobs[1].dz2, jobs[2].dz2, jobs[3].dz2));
+        const f32 depth =
+            each(pa.optical_depth, pb.optical_depth, pc.optical_depth, pd.optical_depth);
+        const f32 kept = each(pa.kept, pb.kept, pc.kept, pd.kept);
+        const f32 tau = times(depth, exp_minus(over(times(splat<f32>(shades_.decay), d2), r2)));
+        f32 amount;
+        if (shades_.light == 2) {
+            const f32 on = times(kept, tau);
+            const f32 through = exp_minus(tau);
+            const f32 log = log_of_sum(plus(through, on), minus(on, one_minus_exp(tau, through)));
+            amount = choose(less(splat<f32>(0.0f), on), negative(log), tau);
         } else {
-            amount = times(tau, splat(p.kept));
+            amount = times(tau, kept);
         }
-        amount = _mm256_and_ps(amount, _mm256_cmp_ps(d2, r2, _CMP_NGE_UQ));
-        amount = s.inverse_quantum != 0.0f ? times(amount, splat(s.inverse_quantum))
-                                           : over(amount, splat(s.quantum));
-        if constexpr (whole_columns) {
-            const f8 inside =
-                _mm256_and_ps(_mm256_cmp_ps(columns, splat(static_cast<float>(p.left)), _CMP_GE_OQ),
-                              less(columns, splat(static_cast<float>(p.right))));
-            amount = _mm256_and_ps(amount, inside);
-        }
-        return amount;
+        amount = both(amount, not_up_to(d2, r2));
+        amount = shades_.inverse_quantum != 0.0f
+                     ? times(amount, splat<f32>(shades_.inverse_quantum))
+                     : over(amount, splat<f32>(shades_.quantum));
+        out[0] = amount.a;
+        out[1] = amount.b;
+        out[2] = amount.c;
+        out[3] = amount.d;
+    }
+    [[gnu::target("avx2"), gnu::always_inline]] static eight::f32 each(float a, float b, float c,
+                                                                       float d) {
+        return {_mm256_set1_ps(a), _mm256_set1_ps(b), _mm256_set1_ps(c), _mm256_set1_ps(d)};
     }
 
     [[nodiscard]] shades make_shades() const {
@@ -320,25 +333,51 @@ class particle_bins {
                 shade.light};
     }
 
-    [[gnu::target("avx2")]] static void add_to(std::int32_t* sums, __m256i amounts) {
+    [[gnu::target("avx2"), gnu::always_inline]] static void add_to(std::int32_t* sums,
+                                                                   __m256i amounts) {
         auto* const at = reinterpret_cast<__m256i*>(sums);
         _mm256_storeu_si256(at, _mm256_add_epi32(_mm256_loadu_si256(at), amounts));
     }
+    /// Rows of a particle from the highest downwards, and what of it lies above each.
+    struct row_run {
+        std::int32_t* sums;
+        std::int64_t stride;
+        const float* parts;
+        std::int32_t count;
+        bool starts_above; ///< the first of `parts` is of the row above the highest
+    };
 
-    /// Adds 8 · N columns of a particle, from x on.
+    /// Adds N times eight columns to rows: what lies above each, less what the row above it got.
     template <std::size_t N>
-    [[gnu::target("avx2")]] void add_columns(const layered_particle& p, const float* parts,
-                                             std::int32_t x, float dz2,
-                                             const layer_sums& to) const {
+    [[gnu::target("avx2"), gnu::always_inline]] static void add_rows(const row_run& to,
+                                                                     const eight::f8* lines) {
         using namespace eight;
-        f8 lines[N];
+        i8 above[N];
         for (std::size_t k = 0; k < N; ++k) {
-            lines[k] = lateral(p, static_cast<float>(x + 8 * static_cast<std::int32_t>(k)), dz2);
+            above[k] = to.starts_above ? quanta(times(lines[k], _mm256_set1_ps(to.parts[0])))
+                                       : _mm256_setzero_si256();
         }
+        const float* const parts = to.parts + (to.starts_above ? 1 : 0);
+        std::int32_t* sums = to.sums;
+        for (std::int32_t i = 0; i < to.count; ++i, sums -= to.stride) {
+            for (std::size_t k = 0; k < N; ++k) {
+                const i8 here = quanta(times(lines[k], _mm256_set1_ps(parts[i])));
+                add_to(sums + 8 * k, _mm256_sub_epi32(here, above[k]));
+                above[k] = whole_columns ? above[k] : here;
+            }
+        }
+    }
+
+    /// Adds N jobs of a particle that lie side by side.
+    template <std::size_t N>
+    [[gnu::target("avx2"), gnu::always_inline]] void
+    add_columns(const job& of, const eight::f8* lines, const layer_sums& to) const {
+        using namespace eight;
+        const layered_particle& p = *of.particle;
         const std::int32_t highest = std::min(p.top, height_ - 1);
         const std::int32_t lowest = std::max(p.bottom, 0);
         const std::int64_t stride = to.stride;
-        std::int32_t* const sums = to.sums + x;
+        std::int32_t* const sums = to.sums + of.column;
         if (p.top == p.bottom) {
             if (p.top == highest) {
                 for (std::size_t k = 0; k < N; ++k) {
@@ -346,20 +385,12 @@ class particle_bins {
                 }
             }
         } else if (highest >= lowest) {
-            i8 above[N];
-            for (std::size_t k = 0; k < N; ++k) {
-                above[k] = whole_columns || p.top == highest
-                               ? _mm256_setzero_si256()
-                               : quanta(times(lines[k], splat(parts[p.top - highest - 1])));
-            }
-            for (std::int32_t row = highest; row >= lowest; --row) {
-                const f8 part = splat(parts[p.top - row]);
-                for (std::size_t k = 0; k < N; ++k) {
-                    const i8 here = quanta(times(lines[k], part));
-                    add_to(sums + row * stride + 8 * k, _mm256_sub_epi32(here, above[k]));
-                    above[k] = whole_columns ? above[k] : here;
-                }
-            }
+            const std::int32_t cut_off = p.top - highest;
+            const bool starts_above = !whole_columns && cut_off != 0;
+            const row_run all{sums + highest * stride, stride,
+                              of.parts + cut_off - (starts_above ? 1 : 0), highest - lowest + 1,
+                              starts_above};
+            add_rows<N>(all, lines);
         }
         if constexpr (whole_columns) {
             i8 whole[N];
@@ -374,53 +405,99 @@ class particle_bins {
         }
     }
 
-    /// Adds those of the particles [first, last) of a class that cut layer z.
-    [[gnu::target("avx2")]] void add_particles(std::uint32_t c, std::uint32_t first,
-                                               std::uint32_t last, std::int32_t z,
-                                               const layer_sums& to) const {
-        const float depth = kernel_->shade.grid.voxel.z;
-        for (std::uint32_t i = first; i < last; ++i) {
-            const layered_particle& p = records_[i];
-            if (p.end <= z) {
-                continue;
+    /// Does the first `count` jobs. Those up to the next multiple of four are something already.
+    [[gnu::target("avx2")]] void finish(const job* jobs, std::size_t count,
+                                        const layer_sums& to) const {
+        eight::f8 lines[most_jobs];
+        for (std::size_t i = 0; i < count; i += 4) {
+            lateral(jobs + i, lines + i);
+        }
+        if constexpr (whole_columns) {
+            for (std::size_t i = 0; i < count; ++i) {
+                lines[i] = eight::both(lines[i], in_slab(jobs[i]));
             }
-            const float* const parts = most_[c].rows != 0 ? parts_at(c, i) : nullptr;
-            const float dz = (static_cast<float>(z) + 0.5f - p.z) * depth;
-            const float dz2 = dz * dz;
-            // Small ones are taken as wide as they are anywhere: what a narrower row would save is
-            // lost where the number of vectors is foreseen wrong.
-            if (p.vectors == 2) {
-                add_columns<2>(p, parts, p.start, dz2, to);
-            } else if (p.vectors == 1) {
-                add_columns<1>(p, parts, p.start, dz2, to);
-            } else if (p.vectors == 3) {
-                add_columns<3>(p, parts, p.start, dz2, to);
-            } else if (p.vectors == 0) {
-                plain_program<K>::add_slab(*kernel_, p.element,
-                                           static_cast<std::uint32_t>(z - p.first), to, particles_);
+        }
+        for (std::size_t i = 0; i < count;) {
+            if (i + 1 < count && jobs[i + 1].particle == jobs[i].particle &&
+                jobs[i + 1].column == jobs[i].column + 8) {
+                add_columns<2>(jobs[i], lines + i, to);
+                i += 2;
             } else {
-                add_wide(p, parts, dz2, to);
+                add_columns<1>(jobs[i], lines + i, to);
+                i += 1;
             }
         }
     }
 
-    /// A wide particle: as wide as its chord is.
-    [[gnu::target("avx2")]] void add_wide(const layered_particle& p, const float* parts, float dz2,
-                                          const layer_sums& to) const {
-        // A little more, because of rounding; beyond it nothing is added.
-        const float chord = std::max(p.radius2 * 1.000002f - dz2, 0.0f);
-        const float reach = _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(chord))) * shades_.inverse_width;
+    /// The columns that a shadow slab covers: rounding apart, those within the radius.
+    [[gnu::target("avx2")]] static __m256 in_slab(const job& of) {
+        const __m256i columns = _mm256_add_epi32(_mm256_set1_epi32(of.column),
+                                                 _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+        return _mm256_castsi256_ps(_mm256_andnot_si256(
+            _mm256_cmpgt_epi32(_mm256_set1_epi32(of.particle->left), columns),
+            _mm256_cmpgt_epi32(_mm256_set1_epi32(of.particle->right), columns)));
+    }
+
+    /// Adds what the particles have in layer z.
+    void add_fast(std::uint32_t z, const layer_sums& to) const {
+        // Those that were never filled in are computed with as well.
+        std::array<job, most_jobs> jobs;
+        jobs.fill({records_, nullptr, 0, 0});
+        std::size_t count = 0;
+        const auto finish_now = [&] {
+            finish(jobs.data(), count, to);
+            count = 0;
+        };
+        const float depth = kernel_->shade.grid.voxel.z;
+        for (std::uint32_t c = 0; c < classes; ++c) {
+            if (most_[c].layers == 0) {
+                continue;
+            }
+            const std::uint32_t bin = c * layers_;
+            const std::uint32_t from = bin + z - std::min(z, most_[c].layers - 1);
+            for (std::uint32_t i = from == 0 ? 0 : ends_[from - 1]; i < ends_[bin + z]; ++i) {
+                const layered_particle& p = records_[i];
+                if (p.end <= static_cast<std::int32_t>(z)) {
+                    continue;
+                }
+                if (p.vectors == 0) {
+                    plain_program<K>::add_slab(*kernel_, p.element,
+                                               z - static_cast<std::uint32_t>(p.first), to,
+                                               particles_);
+                    continue;
+                }
+                const float dz = (static_cast<float>(z) + 0.5f - p.z) * depth;
+                const stretch across = stretch_of(p, dz * dz);
+                const float* const parts = most_[c].rows != 0 ? parts_at(c, i) : nullptr;
+                for (std::uint32_t k = 0; k < across.vectors; ++k) {
+                    jobs[count++] = {&p, parts, dz * dz,
+                                     across.start + 8 * static_cast<std::int32_t>(k)};
+                    if (count == most_jobs) {
+                        finish_now();
+                    }
+                }
+            }
+        }
+        finish_now();
+    }
+
+    struct stretch {
+        std::int32_t start;
+        std::uint32_t vectors;
+    };
+    /// Small ones are taken as wide as they are anywhere: what a narrower row would save is lost
+    /// where the number of vectors is foreseen wrong.
+    [[nodiscard]] stretch stretch_of(const layered_particle& p, float dz2) const {
+        if (p.vectors <= 3) {
+            return {p.start, p.vectors};
+        }
+        // A little more than the chord, because of rounding; beyond it nothing is added.
+        const float reach =
+            std::sqrt(std::max(p.radius2 * 1.000002f - dz2, 0.0f)) * shades_.inverse_width;
         const std::int32_t left = std::max(static_cast<std::int32_t>(p.x - reach + 0.49f), 0);
         const std::int32_t right = std::min(static_cast<std::int32_t>(p.x + reach + 0.51f), width_);
-        const std::int32_t columns = (right - left + 7) / 8 * 8;
-        std::int32_t x = std::min(left, width_ - columns);
-        const std::int32_t end = x + columns;
-        for (; x + 16 <= end; x += 16) {
-            add_columns<2>(p, parts, x, dz2, to);
-        }
-        if (x < end) {
-            add_columns<1>(p, parts, x, dz2, to);
-        }
+        const std::int32_t width = std::max((right - left + 7) / 8 * 8, 0);
+        return {std::min(left, width_ - width), static_cast<std::uint32_t>(width) / 8};
     }
 
     slab_bins<K, particles_span> plain_;
@@ -429,8 +506,6 @@ class particle_bins {
     bool fast_;
     shades shades_;
     std::uint32_t layers_ = 0;
-    std::uint32_t band_rows_ = 1;
-    std::uint32_t bands_ = 0;
     std::int32_t width_ = 0;
     std::int32_t height_ = 0;
     layered_particle* records_ = nullptr;

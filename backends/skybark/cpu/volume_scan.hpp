@@ -14,6 +14,7 @@
 #include <type_traits>
 
 #if defined(__GNUC__) && defined(__x86_64__)
+#    include <cpuid.h>
 #    include <immintrin.h>
 #endif
 
@@ -96,12 +97,12 @@ void along_rows(const sheet<const typename Step::in>& from, const sheet<typename
 
 #if defined(__GNUC__) && defined(__x86_64__)
 /// `along_rows` for int32 in AVX2's registers, `Blocks` times eight columns at a time from `first`
-/// on, as often as they fit; returns the first column that is left. What is read is cleared, if so
-/// asked.
-template <class Step, bool Clear, std::size_t Blocks>
+/// on, as often as they fit; returns the first column that is left. Where `In` is not const, what
+/// has been read is cleared. Writes past the cache where the rows lie in whole vectors.
+template <class Step, std::size_t Blocks, class In>
 [[gnu::target("avx2,f16c")]] std::uint32_t
-blocks_along_rows(const sheet<std::int32_t>& from, const sheet<typename Step::out>& to,
-                  std::uint32_t first, bool descending, float scale) {
+blocks_along_rows(const sheet<In>& from, const sheet<typename Step::out>& to, std::uint32_t first,
+                  bool descending, float scale) {
     constexpr std::uint32_t width = 8 * Blocks;
     const bool aligned = reinterpret_cast<std::uintptr_t>(to.data) % 32 == 0 &&
                          to.stride * sizeof(*to.data) % 32 == 0;
@@ -112,10 +113,11 @@ blocks_along_rows(const sheet<std::int32_t>& from, const sheet<typename Step::ou
             b = _mm256_setzero_si256();
         }
         for (std::uint32_t i = 0; i < from.rows; ++i) {
-            auto* const own = reinterpret_cast<__m256i*>(from.row(i, descending) + first);
+            In* const own = from.row(i, descending) + first;
             typename Step::out* const out = to.row(i, descending) + first;
             for (std::size_t k = 0; k < Blocks; ++k) {
-                const __m256i value = _mm256_loadu_si256(own + k);
+                const __m256i value =
+                    _mm256_loadu_si256(reinterpret_cast<const __m256i*>(own + 8 * k));
                 const __m256i past = before[k];
                 before[k] = _mm256_add_epi32(past, value);
                 __m256 sum;
@@ -135,8 +137,9 @@ blocks_along_rows(const sheet<std::int32_t>& from, const sheet<typename Step::ou
                     aligned ? _mm256_stream_ps(out + 8 * k, sum)
                             : _mm256_storeu_ps(out + 8 * k, sum);
                 }
-                if constexpr (Clear) {
-                    _mm256_storeu_si256(own + k, _mm256_setzero_si256());
+                if constexpr (!std::is_const_v<In>) {
+                    _mm256_storeu_si256(reinterpret_cast<__m256i*>(own + 8 * k),
+                                        _mm256_setzero_si256());
                 }
             }
         }
@@ -144,37 +147,40 @@ blocks_along_rows(const sheet<std::int32_t>& from, const sheet<typename Step::ou
     return first;
 }
 
-/// Whether Step is one of those that the above does, on this machine.
-template <class Step>
-[[nodiscard]] bool has_blocks() {
-    if constexpr (std::is_same_v<typename Step::in, std::int32_t> &&
-                  !std::is_same_v<typename Step::out, std::int32_t>) {
-        return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("f16c");
-    } else {
-        return false;
-    }
+/// Whether the machine can do the above.
+[[nodiscard]] inline bool has_blocks() {
+    static const bool has = [] {
+        unsigned a = 0, b = 0, c = 0, d = 0;
+        return __builtin_cpu_supports("avx2") && __get_cpuid(1, &a, &b, &c, &d) != 0 &&
+               (c & bit_F16C) != 0;
+    }();
+    return has;
 }
 #endif
 
-/// The same down the rows of int32, which are cleared; writes past the cache where it can.
-template <class Step>
-void down_rows_and_clear(const sheet<std::int32_t>& from, const sheet<typename Step::out>& to,
-                         const volume_scan& how) {
+/// Down the rows, the fastest way that there is. Where `In` is not const, what has been read is
+/// cleared.
+template <class Step, class In>
+void down_rows(const sheet<In>& from, const sheet<typename Step::out>& to, const volume_scan& how) {
     const bool descending = how.direction == scan_direction::descending;
     std::uint32_t first = 0;
 #if defined(__GNUC__) && defined(__x86_64__)
-    if constexpr (!std::is_same_v<typename Step::out, std::int32_t>) {
-        if (has_blocks<Step>()) {
-            first = blocks_along_rows<Step, true, 8>(from, to, first, descending, how.scale);
-            first = blocks_along_rows<Step, true, 1>(from, to, first, descending, how.scale);
+    if constexpr (std::is_same_v<typename Step::in, std::int32_t> &&
+                  !std::is_same_v<typename Step::out, std::int32_t>) {
+        if (has_blocks()) {
+            first = blocks_along_rows<Step, 8>(from, to, first, descending, how.scale);
+            first = blocks_along_rows<Step, 1>(from, to, first, descending, how.scale);
+            finish_streaming();
         }
     }
 #endif
     const std::uint32_t left = from.columns - first;
     along_rows<Step>({from.data + first, from.stride, from.rows, left},
                      {to.data + first, to.stride, to.rows, left}, descending, how.scale);
-    for (std::uint32_t i = 0; i < from.rows && left != 0; ++i) {
-        std::fill_n(from.row(i, false) + first, left, 0);
+    if constexpr (!std::is_const_v<In>) {
+        for (std::uint32_t i = 0; i < from.rows && left != 0; ++i) {
+            std::fill_n(from.row(i, false) + first, left, In{0});
+        }
     }
 }
 
@@ -232,15 +238,6 @@ void with_step(volume_format from, volume_format to, scan_share share, Work&& wo
     }
 }
 
-/// The scan along y of one layer.
-template <class Step>
-void layer_along_y(const typename Step::in* in, typename Step::out* out,
-                   const volume_description& what, const volume_scan& how) {
-    along_rows<Step>({in, what.width, what.height, what.width},
-                     {out, what.width, what.height, what.width},
-                     how.direction == scan_direction::descending, how.scale);
-}
-
 } // namespace sums
 
 /// The scan of a volume into another: see the contract in skybark/core/backend.hpp.
@@ -252,19 +249,22 @@ void scan_volume(Device& device, const volume& from, const volume& to, const vol
     sums::with_step(what.format, to.description().format, how.share, [&]<class Step>() {
         const auto* const in = reinterpret_cast<const typename Step::in*>(from.data());
         auto* const out = reinterpret_cast<typename Step::out*>(to.data());
+        using in_type = const typename Step::in;
         if (how.axis == scan_axis::y) {
             device.for_pieces(what.depth, 1, [&](std::uint64_t first, std::uint64_t count) {
-                for (std::uint64_t z = first; z < first + count; ++z) {
-                    sums::layer_along_y<Step>(in + z * layer, out + z * layer, what, how);
+                for (std::uint64_t at = first * layer; at < (first + count) * layer; at += layer) {
+                    sums::down_rows<Step>(
+                        sums::sheet<in_type>{in + at, what.width, what.height, what.width},
+                        {out + at, what.width, what.height, what.width}, how);
                 }
             });
         } else if (how.axis == scan_axis::z) {
             device.for_pieces(what.height, 1, [&](std::uint64_t first, std::uint64_t count) {
-                for (std::uint64_t row = first * what.width; row < (first + count) * what.width;
-                     row += what.width) {
-                    sums::along_rows<Step>({in + row, layer, what.depth, what.width},
-                                           {out + row, layer, what.depth, what.width}, descending,
-                                           how.scale);
+                for (std::uint64_t at = first * what.width; at < (first + count) * what.width;
+                     at += what.width) {
+                    sums::down_rows<Step>(
+                        sums::sheet<in_type>{in + at, layer, what.depth, what.width},
+                        {out + at, layer, what.depth, what.width}, how);
                 }
             });
         } else {
