@@ -41,8 +41,8 @@ struct vdb_volume {
                             ///< + ½ there, and at its index in the file
 };
 
-/// Writes it as a fog volume; voxels of 0 take no room.
+/// Writes them as fog volumes; voxels of 0 take no room.
 /// Errors: `values` has another size, `to_world` can't be inverted, the file can't be written.
-[[nodiscard]] result<void> write_vdb(const std::string& path, const vdb_volume& volume);
+[[nodiscard]] result<void> write_vdb(const std::string& path, std::span<const vdb_volume> volumes);
 
 } // namespace skybark::io

@@ -14,4 +14,14 @@ namespace skybark::tool {
     return vulkan::headless::create(std::move(wanted));
 }
 
+/// What is known of the device that was opened.
+[[nodiscard]] inline std::string driver_of(std::uint32_t index) {
+    const auto devices = vulkan::headless::devices();
+    if (!devices || index >= devices->size()) {
+        return "unknown";
+    }
+    const vulkan::physical_device& device = (*devices)[index];
+    return device.driver + ", Vulkan " + device.api_version;
+}
+
 } // namespace skybark::tool

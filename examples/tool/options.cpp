@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <glm/geometric.hpp>
 #include <io/text_input.hpp>
 
 namespace skybark::tool {
@@ -24,6 +25,32 @@ result<std::pair<std::uint32_t, std::uint32_t>> parse_size(std::string_view text
     return fail(error_code::bad_input, "--size is " + io::in_quotes(text) +
                                            "; expected WIDTHxHEIGHT such as 1280x800, each from 1 "
                                            "to 16384 pixels.");
+}
+
+/// Three numbers with commas between, if they were typed.
+result<void> read_place(std::string_view option, const std::optional<std::string>& text,
+                        std::optional<glm::vec3>& to) {
+    constexpr double farthest = 1e6; // m
+    if (!text) {
+        return {};
+    }
+    glm::vec3 place(0);
+    std::string_view rest = *text;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t comma = rest.find(',');
+        if ((comma == std::string_view::npos) != (axis == 2)) {
+            return fail(error_code::bad_input, std::string(option) + " is " + io::in_quotes(*text) +
+                                                   "; expected X,Y,Z in m, such as 3,1.5,4.");
+        }
+        const auto value = number(option, rest.substr(0, comma), -farthest, farthest, "m");
+        if (!value) {
+            return failure(value.error());
+        }
+        place[axis] = static_cast<float>(*value);
+        rest.remove_prefix(axis < 2 ? comma + 1 : 0);
+    }
+    to = place;
+    return {};
 }
 
 } // namespace
@@ -48,6 +75,31 @@ void add_common_options(CLI::App& to, common_words& words) {
     to.add_option("--stats", words.stats, "Write counts, seconds by stage and the device as JSON")
         ->type_name("FILE.json");
     add_quiet(to, words);
+}
+
+void add_camera_options(CLI::App& to, std::optional<std::string>& camera,
+                        std::optional<std::string>& look_at) {
+    to.add_option("--camera", camera, "Where the picture is taken from, in m")->type_name("X,Y,Z");
+    to.add_option("--look-at", look_at, "What is in its middle, in m")->type_name("X,Y,Z");
+}
+
+result<camera_view> check_camera(const std::optional<std::string>& camera,
+                                 const std::optional<std::string>& look_at) {
+    if (camera.has_value() != look_at.has_value()) {
+        return fail(error_code::bad_input, "--camera and --look-at go together; expected both.");
+    }
+    camera_view view;
+    if (auto good = read_place("--camera", camera, view.eye); !good) {
+        return failure(good.error());
+    }
+    if (auto good = read_place("--look-at", look_at, view.target); !good) {
+        return failure(good.error());
+    }
+    if (view.eye && glm::distance(*view.eye, *view.target) < 1e-3f) {
+        return fail(error_code::bad_input,
+                    "--camera and --look-at are the same place; expected two.");
+    }
+    return view;
 }
 
 result<common_options> check(const common_words& words) {

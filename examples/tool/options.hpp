@@ -4,7 +4,9 @@
 #include <skybark/core/result.hpp>
 
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -53,6 +55,17 @@ void add_backend_options(CLI::App& to, common_words& words);
 void add_quiet(CLI::App& to, common_words& words);
 void add_common_options(CLI::App& to, common_words& words);
 [[nodiscard]] result<common_options> check(const common_words& words);
+
+/// Where a picture is taken from, and what is in its middle, m. Nothing: where all is seen.
+struct camera_view {
+    std::optional<glm::vec3> eye;
+    std::optional<glm::vec3> target;
+};
+/// Adds --camera and --look-at.
+void add_camera_options(CLI::App& to, std::optional<std::string>& camera,
+                        std::optional<std::string>& look_at);
+[[nodiscard]] result<camera_view> check_camera(const std::optional<std::string>& camera,
+                                               const std::optional<std::string>& look_at);
 
 /// A whole number in [low, high], or a sentence that names `option` and what it got.
 [[nodiscard]] result<std::uint32_t>

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <CLI/CLI.hpp>
-#include <glm/geometric.hpp>
 #include <io/text_input.hpp>
 
 namespace skybark::tool {
@@ -14,7 +13,6 @@ namespace {
 constexpr double deepest_bark = 1;           // m: no tree's is
 constexpr float shortest_bark_edge = 0.001f; // m
 constexpr float longest_bark_edge = 100;     // m
-constexpr double farthest = 1e6;             // m
 constexpr double strongest_wind = 150;       // m/s: more than any that was measured near the ground
 constexpr double longest = 86400;            // s: a day
 constexpr double fewest_frames_a_second = 0.001;
@@ -192,44 +190,13 @@ result<void> check_frames(const tree_option_words& words, const tree_option_cont
     return check_output(context, options);
 }
 
-/// Three numbers with commas between, if they were typed.
-result<void> read_place(std::string_view option, const std::optional<std::string>& text,
-                        std::optional<glm::vec3>& to) {
-    if (!text) {
-        return {};
+result<void> read_camera(const tree_option_words& words, tree_options& options) {
+    const auto view = check_camera(words.camera, words.look_at);
+    if (!view) {
+        return failure(view.error());
     }
-    glm::vec3 place(0);
-    std::string_view rest = *text;
-    for (int axis = 0; axis < 3; ++axis) {
-        const std::size_t comma = rest.find(',');
-        if ((comma == std::string_view::npos) != (axis == 2)) {
-            return contradiction(std::string(option) + " is " + io::in_quotes(*text) +
-                                 "; expected X,Y,Z in m, such as 3,1.5,4.");
-        }
-        const auto value = number(option, rest.substr(0, comma), -farthest, farthest, "m");
-        if (!value) {
-            return failure(value.error());
-        }
-        place[axis] = static_cast<float>(*value);
-        rest.remove_prefix(axis < 2 ? comma + 1 : 0);
-    }
-    to = place;
-    return {};
-}
-
-result<void> check_camera(const tree_option_words& words, tree_options& options) {
-    if (words.camera.has_value() != words.look_at.has_value()) {
-        return contradiction("--camera and --look-at go together; expected both.");
-    }
-    if (auto good = read_place("--camera", words.camera, options.camera); !good) {
-        return good;
-    }
-    if (auto good = read_place("--look-at", words.look_at, options.look_at); !good) {
-        return good;
-    }
-    if (options.camera && glm::distance(*options.camera, *options.look_at) < 1e-3f) {
-        return contradiction("--camera and --look-at are the same place; expected two.");
-    }
+    options.camera = view->eye;
+    options.look_at = view->target;
     return {};
 }
 
@@ -281,9 +248,7 @@ void add_tree_options(CLI::App& to, tree_option_words& words) {
           "--lod", words.lod,
           "Level of detail: 0 is all of it, 1 what the picture can show, 2 half as fine (0)")
         ->type_name("L");
-    to.add_option("--camera", words.camera, "Where the picture is taken from, in m")
-        ->type_name("X,Y,Z");
-    to.add_option("--look-at", words.look_at, "What is in its middle, in m")->type_name("X,Y,Z");
+    add_camera_options(to, words.camera, words.look_at);
     to.add_flag("--tubes", words.tubes,
                 "Branches as capped tubes that stick in each other (one closed surface a tree)");
 }
@@ -302,7 +267,7 @@ result<tree_options> check(const tree_option_words& words, const tree_option_con
         good = read("--lod", words.lod, 0, coarsest, "", options.lod);
     }
     if (good) {
-        good = check_camera(words, options);
+        good = read_camera(words, options);
     }
     if (good) {
         good = check_frames(words, context, options);

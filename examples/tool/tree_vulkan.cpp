@@ -10,20 +10,6 @@
 
 namespace skybark::tool {
 
-namespace {
-
-/// What is known of the device that was opened.
-std::string driver_of(std::uint32_t index) {
-    const auto devices = vulkan::headless::devices();
-    if (!devices || index >= devices->size()) {
-        return "unknown";
-    }
-    const vulkan::physical_device& device = (*devices)[index];
-    return device.driver + ", Vulkan " + device.api_version;
-}
-
-} // namespace
-
 result<void> make_tree_on_vulkan(tree_job& job) {
     auto opened = open_vulkan(job.common);
     if (!opened) {

@@ -27,7 +27,7 @@ class tool_usage : public tool {
 } // namespace
 
 TEST_F(tool_usage, helps) {
-    for (const char* command : {"tree", "devices", "conformance"}) {
+    for (const char* command : {"tree", "cloud", "devices", "conformance"}) {
         const outcome o = skybark({command, "--help"});
         EXPECT_EQ(o.code, 0);
         EXPECT_EQ(o.err, "");
@@ -42,6 +42,12 @@ TEST_F(tool_usage, helps) {
              "--leaf-map", "--sway",   "--wind",  "--wind-from", "--gusts",     "--at",
              "--frames",   "--fps",    "--lod",   "--tubes",     "--bark-edge", "--camera",
              "--look-at"}));
+    EXPECT_TRUE(has(
+        skybark({"cloud", "--help"}).out,
+        {"--backend", "--device", "--size",    "--seed",       "--stats",  "--quiet",     "--sun",
+         "--volume",  "--method", "--padding", "--polygons",   "--route",  "--profile",   "--light",
+         "--octaves", "--phase",  "--sigmas",  "--extinction", "--albedo", "--particles", "--half",
+         "--probe",   "--camera", "--look-at", "--list",       "-o"}));
 }
 
 TEST_F(tool_usage, tells_its_version) {
@@ -62,7 +68,7 @@ TEST_F(tool_usage, wants_a_command) {
     const outcome o = skybark({});
     EXPECT_EQ(o.code, 2);
     EXPECT_TRUE(has(o.err, {"Usage: skybark"}));
-    expect_refused({"grow"}, {"\"grow\"", "tree, devices or conformance"});
+    expect_refused({"grow"}, {"\"grow\"", "tree, cloud, devices or conformance"});
     expect_refused({"--grow"}, {"--grow"});
 }
 

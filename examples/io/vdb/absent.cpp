@@ -17,6 +17,8 @@ failure fail_without(const std::string& path) {
 
 result<density_grid> read_vdb(const std::string& path) { return fail_without(path); }
 
-result<void> write_vdb(const std::string& path, const vdb_volume&) { return fail_without(path); }
+result<void> write_vdb(const std::string& path, std::span<const vdb_volume>) {
+    return fail_without(path);
+}
 
 } // namespace skybark::io

@@ -294,8 +294,7 @@ class memory_archive : public openvdb::io::Archive {
     }
 };
 
-std::string encode(const vdb_volume& volume) {
-    openvdb::initialize();
+openvdb::FloatGrid::Ptr grid_of(const vdb_volume& volume) {
     openvdb::Mat4d to_world;
     for (int row = 0; row < 4; ++row)
         for (int column = 0; column < 4; ++column)
@@ -310,7 +309,15 @@ std::string encode(const vdb_volume& volume) {
     const openvdb::tools::Dense<const float, openvdb::tools::LayoutXYZ> dense(
         openvdb::CoordBBox({0, 0, 0}, {side(0), side(1), side(2)}), volume.values.data());
     openvdb::tools::copyFromDense(dense, *grid, 0.0f);
-    return memory_archive().bytes_of({grid});
+    return grid;
+}
+
+std::string encode(std::span<const vdb_volume> volumes) {
+    openvdb::initialize();
+    openvdb::GridPtrVec grids;
+    for (const vdb_volume& volume : volumes)
+        grids.push_back(grid_of(volume));
+    return memory_archive().bytes_of(grids);
 }
 
 } // namespace
@@ -339,17 +346,20 @@ result<density_grid> read_vdb(const std::string& path) {
     });
 }
 
-result<void> write_vdb(const std::string& path, const vdb_volume& volume) {
-    std::uint64_t voxels = 1;
-    for (const std::uint32_t side : volume.voxels)
-        voxels *= side;
-    if (voxels == 0 || voxels != volume.values.size())
-        return fail(error_code::bad_input, in_quotes(path) + " can't be written: a volume of " +
-                                               std::to_string(voxels) + " voxels has " +
-                                               std::to_string(volume.values.size()) + " values.");
+result<void> write_vdb(const std::string& path, std::span<const vdb_volume> volumes) {
+    for (const vdb_volume& volume : volumes) {
+        std::uint64_t voxels = 1;
+        for (const std::uint32_t side : volume.voxels)
+            voxels *= side;
+        if (voxels == 0 || voxels != volume.values.size())
+            return fail(error_code::bad_input, in_quotes(path) + " can't be written: a volume of " +
+                                                   std::to_string(voxels) + " voxels has " +
+                                                   std::to_string(volume.values.size()) +
+                                                   " values.");
+    }
     std::string bytes;
     try {
-        bytes = encode(volume);
+        bytes = encode(volumes);
     } catch (const std::bad_alloc&) {
         return fail(error_code::out_of_memory,
                     "There is not enough memory to write " + in_quotes(path) + ".");

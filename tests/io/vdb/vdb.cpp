@@ -362,7 +362,7 @@ TEST_F(vdb, writes_what_the_library_reads) {
     volume.voxels = {sides[0], sides[1], sides[2]};
     volume.to_world = glm::dmat4(glm::dvec4(2, 0, 0, 0), glm::dvec4(0, 0, 3, 0),
                                  glm::dvec4(0, -4, 0, 0), glm::dvec4(100, 200, 300, 1));
-    const auto written = io::write_vdb(file.path, volume);
+    const auto written = io::write_vdb(file.path, std::span(&volume, 1));
     ASSERT_TRUE(written) << written.error().message;
 
     openvdb::io::File in(file.path);
@@ -395,7 +395,7 @@ TEST_F(vdb, reads_what_it_wrote) {
     volume.voxels = {2, 3, 2};
     volume.to_world = glm::dmat4(glm::dvec4(0.5, 0, 0, 0), glm::dvec4(0, 0.25, 0, 0),
                                  glm::dvec4(0, 0, 8, 0), glm::dvec4(-1, -2, -3, 1));
-    ASSERT_TRUE(io::write_vdb(file.path, volume));
+    ASSERT_TRUE(io::write_vdb(file.path, std::span(&volume, 1)));
     const auto read = io::read_vdb(file.path);
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->density, values);
@@ -411,17 +411,17 @@ TEST_F(vdb, leaves_no_half_of_a_file) {
     volume.values = one;
     volume.voxels = {2, 1, 1};
     const temporary_path file("none.vdb");
-    auto written = io::write_vdb(file.path, volume);
+    auto written = io::write_vdb(file.path, std::span(&volume, 1));
     ASSERT_FALSE(written);
     EXPECT_TRUE(has(written.error().message, "a volume of 2 voxels has 1 values"));
     volume.voxels = {1, 1, 1};
     volume.to_world = glm::dmat4(0);
-    written = io::write_vdb(file.path, volume);
+    written = io::write_vdb(file.path, std::span(&volume, 1));
     ASSERT_FALSE(written) << "no inverse";
     EXPECT_FALSE(std::filesystem::exists(file.path));
     volume.to_world = glm::dmat4(1);
-    written = io::write_vdb("/no/such/folder/a.vdb", volume);
+    written = io::write_vdb("/no/such/folder/a.vdb", std::span(&volume, 1));
     ASSERT_FALSE(written);
     EXPECT_TRUE(has(written.error().message, "/no/such/folder"));
-    ASSERT_TRUE(io::write_vdb(file.path, volume));
+    ASSERT_TRUE(io::write_vdb(file.path, std::span(&volume, 1)));
 }

@@ -1,0 +1,276 @@
+// The cloud command: its options, its input, its files.
+
+#include "cloud_job.hpp"
+#include "commands.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <io/atomic_file.hpp>
+#include <io/read_particles.hpp>
+#include <io/text_input.hpp>
+#include <io/vdb.hpp>
+#include <nlohmann/json.hpp>
+#include <skybark/clouds/cumulus.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace skybark::tool {
+
+namespace {
+
+/// The options as they were typed.
+struct cloud_words {
+    common_words common;
+    std::string input;
+    std::string out;
+    cloud_option_words more;
+    bool list = false;
+};
+
+bool same_file(const std::string& a, const std::string& b) {
+    std::error_code error;
+    return !a.empty() && !b.empty() && (a == b || std::filesystem::equivalent(a, b, error));
+}
+
+/// Turns words into a job. Errors are those of the command line.
+result<void> check_words(const cloud_words& words, cloud_job& job) {
+    const auto common = check(words.common);
+    if (!common) {
+        return failure(common.error());
+    }
+    if (words.input.empty()) {
+        return fail(error_code::bad_input,
+                    "There is no INPUT; expected a .csv or .vdb file or a built-in cloud, such as "
+                    "cumulus ('skybark cloud --list' names all).");
+    }
+    if (words.out.empty()) {
+        return fail(error_code::bad_input, "There is no -o OUT; expected a name that ends in "
+                                           ".png, .vdb or, with --probe, .csv.");
+    }
+    const auto options = check(words.more, {words.input, words.out});
+    if (!options) {
+        return failure(options.error());
+    }
+    const std::string files[] = {words.input, words.out, words.common.stats, options->probe};
+    for (std::size_t i = 0; i < std::size(files); ++i) {
+        for (std::size_t k = 0; k < i; ++k) {
+            if (same_file(files[i], files[k])) {
+                return fail(error_code::bad_input, "Two of INPUT, -o, --probe and --stats are the "
+                                                   "same file; expected each its own.");
+            }
+        }
+    }
+    job.common = *common;
+    job.options = *options;
+    job.input = words.input;
+    job.out = words.out;
+    return {};
+}
+
+int list_clouds() {
+    for (const cloud_entry& entry : all_clouds()) {
+        std::printf("%-22.*s %.*s\n", static_cast<int>(entry.name.size()), entry.name.data(),
+                    static_cast<int>(entry.title.size()), entry.title.data());
+    }
+    return exit_done;
+}
+
+result<void> make_on_backend(cloud_job& job) {
+    switch (job.common.backend) {
+    case backend_kind::opengl:
+        return make_cloud_on_opengl(job);
+    case backend_kind::vulkan:
+        return make_cloud_on_vulkan(job);
+    default:
+        return make_cloud_on_cpu(job);
+    }
+}
+
+constexpr const char* backend_names[] = {"cpu", "opengl", "vulkan"};
+
+const char* backend_name(const cloud_job& job) {
+    return backend_names[static_cast<std::size_t>(job.common.backend)];
+}
+
+nlohmann::ordered_json stats_of(const cloud_job& job) {
+    nlohmann::ordered_json stats;
+    stats["command"] = "cloud";
+    stats["version"] = SKYBARK_VERSION;
+    stats["input"] = job.input;
+    stats["output"] = job.out;
+    stats["backend"] = backend_name(job);
+    stats["device"] = job.device;
+    stats["driver"] = job.driver;
+    const glm::uvec3 voxels = job.box.voxels;
+    stats["counts"] = {{"particles", job.particles.size()},
+                       {"densities", job.grid.density.size()},
+                       {"voxels", std::uint64_t{voxels.x} * voxels.y * voxels.z},
+                       {"points", job.points.size()}};
+    stats["voxel"] = {job.box.grid.voxel.x, job.box.grid.voxel.y, job.box.grid.voxel.z};
+    for (const auto& [name, seconds] : job.time.seconds()) {
+        stats["seconds"][name] = seconds;
+    }
+    stats["seconds"]["total"] = job.time.total();
+    stats["bytes"] = {{"up", job.traffic.up}, {"down", job.traffic.down}};
+    return stats;
+}
+
+result<void> write_stats(const cloud_job& job) {
+    if (job.common.stats.empty()) {
+        return {};
+    }
+    // What isn't UTF-8 in a file's name is replaced, where the default would throw.
+    const auto replace = nlohmann::ordered_json::error_handler_t::replace;
+    return io::write_file(job.common.stats, stats_of(job).dump(2, ' ', false, replace) + "\n");
+}
+
+void summarise(const cloud_job& job) {
+    if (job.common.quiet) {
+        return;
+    }
+    const bool is_grid = job.is_grid();
+    std::printf("%s: %zu %s, %u x %u x %u voxels, %.2f s on %s (%s)\n", job.out.c_str(),
+                is_grid ? job.grid.density.size() : job.particles.size(),
+                is_grid ? "densities" : "particles", job.box.voxels.x, job.box.voxels.y,
+                job.box.voxels.z, job.time.total(), backend_name(job), job.device.c_str());
+}
+
+/// What can be known to fail is told before the work is done.
+result<void> check_files(const cloud_job& job) {
+    if (auto good = io::check_writable(job.out); !good) {
+        return good;
+    }
+    return job.common.stats.empty() ? result<void>() : io::check_writable(job.common.stats);
+}
+
+int run_cloud(const cloud_words& words) {
+    if (words.list) {
+        return list_clouds();
+    }
+    cloud_job job(words.common.quiet);
+    if (auto good = check_words(words, job); !good) {
+        return usage_error("cloud", good.error().message);
+    }
+    auto done = check_files(job);
+    if (done) {
+        done = read_cloud(job); // before there is a device: a .vdb is read in a child
+    }
+    if (done) {
+        done = make_on_backend(job);
+    }
+    job.time.end(); // takes the bar away before a sentence comes
+    if (done) {
+        done = write_stats(job);
+    }
+    if (!done) {
+        return report_failure(done.error());
+    }
+    summarise(job);
+    return exit_done;
+}
+
+result<void> read_grid(cloud_job& job) {
+    auto grid = io::read_vdb(job.input);
+    if (!grid) {
+        return failure(grid.error());
+    }
+    job.grid = std::move(*grid);
+    job.low = job.grid.low;
+    job.high = job.grid.low + job.grid.sides();
+    return {};
+}
+
+result<std::vector<cloud_particle>> particles_of(const cloud_job& job) {
+    if (job.options.source == cloud_source::table) {
+        return io::read_particles(job.input);
+    }
+    if (job.options.source == cloud_source::cumuli) {
+        clouds::cumulus_field_options field;
+        field.seed = job.common.seed;
+        field.particles_per_cloud = std::max(1u, job.options.particles / field.clouds);
+        return clouds::cumulus_field(field);
+    }
+    clouds::cumulus_options one;
+    one.seed = job.common.seed;
+    one.particles = job.options.particles;
+    return clouds::cumulus_cloud(one);
+}
+
+result<void> read_particles(cloud_job& job) {
+    auto particles = particles_of(job);
+    if (!particles) {
+        return failure(particles.error());
+    }
+    job.particles = std::move(*particles);
+    job.low = glm::vec3(std::numeric_limits<float>::max());
+    job.high = -job.low;
+    for (const cloud_particle& p : job.particles) {
+        job.low = glm::min(job.low, p.position - p.radius);
+        job.high = glm::max(job.high, p.position + p.radius);
+    }
+    return {};
+}
+
+/// From voxel coordinates to the world: the inverse of `cells = offset + rows · (p − anchor)`. The
+/// rows are at right angles, each as long as one over the side of a voxel.
+glm::dmat4 world_of(const light_grid& grid) {
+    const glm::dvec4 rows[] = {grid.row_x, grid.row_y, grid.row_z};
+    glm::dmat4 to_world(1);
+    glm::dvec3 origin(glm::vec3(grid.anchor));
+    for (int axis = 0; axis < 3; ++axis) {
+        const glm::dvec3 row(rows[axis]);
+        const glm::dvec3 side = row / glm::dot(row, row);
+        to_world[axis] = glm::dvec4(side, 0);
+        origin -= side * rows[axis].w;
+    }
+    to_world[3] = glm::dvec4(origin, 1);
+    return to_world;
+}
+
+} // namespace
+
+result<void> read_cloud(cloud_job& job) {
+    job.time.begin("read");
+    auto done = job.is_grid() ? read_grid(job) : read_particles(job);
+    if (done && !job.options.probe.empty()) {
+        auto points = io::read_points(job.options.probe);
+        if (!points) {
+            return failure(points.error());
+        }
+        job.points = std::move(*points);
+    }
+    return done;
+}
+
+result<void> write_volumes(const cloud_job& job, const std::vector<finished_volume>& volumes) {
+    std::vector<io::vdb_volume> all;
+    for (const finished_volume& volume : volumes) {
+        all.push_back({volume.name,
+                       volume.values,
+                       {volume.voxels.x, volume.voxels.y, volume.voxels.z},
+                       world_of(volume.grid)});
+    }
+    return io::write_vdb(job.out, all);
+}
+
+command add_cloud_command(CLI::App& to) {
+    const auto words = std::make_shared<cloud_words>();
+    CLI::App* cloud =
+        to.add_subcommand("cloud", "Light a cloud: a picture, its volume, or single places in it");
+    cloud->add_option("INPUT", words->input,
+                      "Particles (.csv: x,y,z,radius,optical_depth,albedo), a density (.vdb) or a "
+                      "built-in cloud (--list)");
+    cloud
+        ->add_option("-o,--output", words->out,
+                     "A picture (.png), the optical depth towards the sun as a volume (.vdb), or "
+                     "with --probe a table (.csv); required")
+        ->type_name("OUT");
+    add_cloud_options(*cloud, words->more);
+    cloud->add_flag("--list", words->list, "Name the built-in clouds, and do nothing else");
+    add_common_options(*cloud, words->common);
+    return {"cloud", [words] { return run_cloud(*words); }};
+}
+
+} // namespace skybark::tool

@@ -1,0 +1,60 @@
+#pragma once
+// What the cloud command is asked for, and what it finds on the way.
+
+#include "cloud_options.hpp"
+#include "stages.hpp"
+
+#include <io/density_grid.hpp>
+#include <io/probe_points.hpp>
+#include <skybark/core/backend.hpp>
+
+#include <vector>
+
+namespace skybark::tool {
+
+struct cloud_job {
+    explicit cloud_job(bool quiet) : time({"read", "build", "light", "draw", "write"}, quiet) {}
+
+    common_options common;
+    cloud_options options;
+    std::string input;
+    std::string out;
+
+    stages time;
+
+    // Filled by `read_cloud`: particles, or a grid.
+    std::vector<cloud_particle> particles;
+    io::density_grid grid;
+    std::vector<glm::vec3> points; ///< of --probe
+    glm::vec3 low{0};              ///< m, the box around the cloud
+    glm::vec3 high{0};
+
+    // Filled by `make_cloud`, for the report.
+    clouds::light_box box;
+    std::string device;
+    std::string driver;
+    device_traffic traffic;
+
+    [[nodiscard]] bool is_grid() const { return options.source == cloud_source::grid; }
+};
+
+/// A volume as it came from a device, and where it lies.
+struct finished_volume {
+    std::string name; ///< of its grid in the file
+    light_grid grid;
+    glm::uvec3 voxels{0};
+    std::vector<float> values;
+};
+
+/// Reads the cloud, and the points.
+[[nodiscard]] result<void> read_cloud(cloud_job& job);
+/// Writes them as one .vdb.
+[[nodiscard]] result<void> write_volumes(const cloud_job& job,
+                                         const std::vector<finished_volume>& volumes);
+
+// One a backend, each in its own file, so that none needs another's headers.
+[[nodiscard]] result<void> make_cloud_on_cpu(cloud_job& job);
+[[nodiscard]] result<void> make_cloud_on_opengl(cloud_job& job);
+[[nodiscard]] result<void> make_cloud_on_vulkan(cloud_job& job);
+
+} // namespace skybark::tool

@@ -1,0 +1,90 @@
+// Volumes that the tool writes, read by OpenVDB: each voxel is where a probe of the same place says
+// the same.
+
+#include "../support.hpp"
+
+#include <cmath>
+#include <openvdb/io/File.h>
+#include <openvdb/openvdb.h>
+#include <sstream>
+
+using namespace skybark::tests;
+
+namespace {
+
+openvdb::FloatGrid::Ptr read_grid(const std::string& path, const std::string& name) {
+    openvdb::initialize();
+    openvdb::io::File file(path);
+    file.open(false);
+    return openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(name));
+}
+
+/// The last columns of a table of places.
+std::vector<std::pair<double, double>> read_light(const std::filesystem::path& path) {
+    std::istringstream lines(read_file(path));
+    std::string line;
+    std::getline(lines, line);
+    std::vector<std::pair<double, double>> all;
+    while (std::getline(lines, line)) {
+        double x = 0, y = 0, z = 0, depth = 0, light = 0;
+        char comma = 0;
+        std::istringstream(line) >> x >> comma >> y >> comma >> z >> comma >> depth >> comma >>
+            light;
+        all.emplace_back(depth, light);
+    }
+    return all;
+}
+
+} // namespace
+
+TEST_F(tool, a_volume_says_what_its_places_say) {
+    write_file(in_folder("c.csv"), "x,y,z,radius,optical_depth,albedo\n"
+                                   "1000,500,-200,30,2,1\n1010,520,-190,25,1,0.8\n");
+    for (const char* backend : {"cpu", "opengl", "vulkan"}) {
+        for (const char* half : {"", "--half"}) {
+            const auto with = [&](words more) {
+                more.insert(more.begin(),
+                            {"cloud", in_folder("c.csv"), "--sun", "35,25", "--volume", "20",
+                             "--light", "multiple", "--backend", backend});
+                if (*half != '\0') {
+                    more.push_back(half);
+                }
+                return skybark(more);
+            };
+            const outcome volume = with({"-o", in_folder("v.vdb")});
+            SKYBARK_SKIP_UNAVAILABLE(volume, backend);
+            ASSERT_EQ(volume.code, 0) << volume.err;
+            const auto depth = read_grid(in_folder("v.vdb"), "optical_depth");
+            const auto attenuation = read_grid(in_folder("v.vdb"), "attenuation");
+            const auto fluence = read_grid(in_folder("v.vdb"), "diffuse_fluence");
+            ASSERT_TRUE(depth && attenuation && fluence);
+
+            // The middles of the fluence's cells are corners of voxels; those of voxels aren't its.
+            std::string points = "x,y,z\n";
+            std::vector<openvdb::Coord> cells;
+            for (auto value = depth->cbeginValueOn(); value; ++value) {
+                const openvdb::Coord at = value.getCoord();
+                cells.push_back(at);
+                const openvdb::Vec3d place = depth->indexToWorld(at.asVec3d());
+                points += std::to_string(place.x()) + "," + std::to_string(place.y()) + "," +
+                          std::to_string(place.z()) + "\n";
+            }
+            ASSERT_GT(cells.size(), 1000u);
+            write_file(in_folder("p.csv"), points);
+            const outcome probes =
+                with({"--probe", in_folder("p.csv"), "-o", in_folder("light.csv")});
+            ASSERT_EQ(probes.code, 0) << probes.err;
+            const auto found = read_light(folder / "light.csv");
+            ASSERT_EQ(found.size(), cells.size());
+            for (std::size_t i = 0; i < cells.size(); ++i) {
+                // Places are rounded to 6e-5 m there, of voxels of 5 m: 1e-5 of what lies between
+                // neighbours.
+                ASSERT_NEAR(found[i].first, depth->tree().getValue(cells[i]), 1e-4) << backend;
+                // Light at least what was never scattered, and at most all of it and a little.
+                const double direct = std::exp(-attenuation->tree().getValue(cells[i]));
+                ASSERT_GE(found[i].second, direct - 1e-4);
+                ASSERT_LE(found[i].second, direct + 3);
+            }
+        }
+    }
+}
