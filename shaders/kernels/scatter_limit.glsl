@@ -12,11 +12,15 @@ float sideways(ivec3 at) {
     int right = min(at.x + 1, last.x);
     int back = max(at.z - 1, 0);
     int front = min(at.z + 1, last.z);
-    float x = (scatter_load(0, ivec3(right, at.y, at.z)) - scatter_load(0, ivec3(left, at.y, at.z))) /
-              (float(max(right - left, 1)) * sides.x);
-    float z = (scatter_load(0, ivec3(at.x, at.y, front)) - scatter_load(0, ivec3(at.x, at.y, back))) /
-              (float(max(front - back, 1)) * sides.z);
-    return sqrt(x * x + z * z) / max(scatter_load(0, at), 1e-12);
+    float to_left = scatter_load(0, ivec3(left, at.y, at.z));
+    float to_right = scatter_load(0, ivec3(right, at.y, at.z));
+    float to_back = scatter_load(0, ivec3(at.x, at.y, back));
+    float to_front = scatter_load(0, ivec3(at.x, at.y, front));
+    float x = (to_right - to_left) / (float(max(right - left, 1)) * sides.x);
+    float z = (to_front - to_back) / (float(max(front - back, 1)) * sides.z);
+    float around = 0.25 * ((to_left + to_right) + (to_back + to_front));
+    float here = max(max(scatter_load(0, at), around), 1e-12);
+    return sqrt(x * x + z * z) / here;
 }
 
 void kernel_voxel(ivec3 at) {

@@ -34,11 +34,19 @@ struct scatter_limit {
         const int right = glm::min(at.x + 1, last.x);
         const int back = glm::max(at.z - 1, 0);
         const int front = glm::min(at.z + 1, last.z);
-        const float x = (grids.load(0, {right, at.y, at.z}) - grids.load(0, {left, at.y, at.z})) /
-                        (static_cast<float>(glm::max(right - left, 1)) * sides.x);
-        const float z = (grids.load(0, {at.x, at.y, front}) - grids.load(0, {at.x, at.y, back})) /
-                        (static_cast<float>(glm::max(front - back, 1)) * sides.z);
-        return std::sqrt(x * x + z * z) / glm::max(grids.load(0, at), 1e-12f);
+        const float to_left = grids.load(0, {left, at.y, at.z});
+        const float to_right = grids.load(0, {right, at.y, at.z});
+        const float to_back = grids.load(0, {at.x, at.y, back});
+        const float to_front = grids.load(0, {at.x, at.y, front});
+        const float x =
+            (to_right - to_left) / (static_cast<float>(glm::max(right - left, 1)) * sides.x);
+        const float z =
+            (to_front - to_back) / (static_cast<float>(glm::max(front - back, 1)) * sides.z);
+        // The mean around stands in for a dark cell between bright ones, so that the loss is of the
+        // order of one over a side at most.
+        const float around = 0.25f * ((to_left + to_right) + (to_back + to_front));
+        const float here = glm::max(glm::max(grids.load(0, at), around), 1e-12f);
+        return std::sqrt(x * x + z * z) / here;
     }
 };
 
