@@ -410,7 +410,8 @@ void add_table(const std::string& backend_name, named_method m, bool is_main) {
 template <volume_backend B>
 void add_curves(const std::string& backend_name, const named_method& m) {
     const auto add_row = [&](const char* by, std::uint32_t value, const relight_row& row) {
-        const bool takes_long = (row.by == method::harris && row.particles > 16000) ||
+        const std::uint32_t most = std::same_as<B, cpu::device> ? 256000 : 16000;
+        const bool takes_long = (row.by == method::harris && row.particles > most) ||
                                 (row.by == method::shadow_polygons && covered_voxels(row) > 3e8);
         if (!takes_long) {
             add("clouds/by_" + std::string(by) + "/" + m.name + "_" + backend_name + "/" +
