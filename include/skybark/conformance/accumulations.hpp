@@ -244,6 +244,31 @@ void accumulate_crowd(context<B>& c, std::uint32_t count, slab_route by) {
     accumulate_boxes(c, size, std::move(boxes), by, {1, 0, 0, 1});
 }
 
+/// More elements than 65,535 groups of 64 have room for, and their number on the device.
+template <volume_backend B>
+void accumulate_groups(context<B>& c) {
+    const glm::ivec3 size{5, 4, 3};
+    constexpr std::uint32_t count = 65535 * 64 + 1;
+    std::vector<kernels::probe_box> boxes(count); // most of them have no slabs
+    for (std::uint32_t i = 0; i < count; i += 64) {
+        boxes[i] = {{1, 1, 1, 1}, {3, 2, 2, 0}};
+    }
+    boxes.back() = {{0, 0, 0, 1000}, {1, 1, 1, 0}};
+    const auto p = put_boxes(c, std::move(boxes), {1, 0, 0, 1});
+    const auto sums = put_numbers(c, size);
+    const auto length = c.put_count(count);
+    c.run([&](auto& r) {
+        r.accumulate(p.kernel, p.buffers(), p.all(), into<B>(sums.volume, true, {}));
+        r.accumulate(p.kernel, p.buffers(), counted<B>{length.view(), count},
+                     into<B>(sums.volume, false, {}));
+    });
+    std::vector<std::int64_t> expected(voxels_of(size));
+    expected[voxel_index({0, 0, 0}, size)] = 2000;
+    expected[voxel_index({1, 1, 1}, size)] = 2 * (count / 64);
+    expected[voxel_index({2, 1, 1}, size)] = 2 * (count / 64);
+    expect_sums(c, sums.volume, expected);
+}
+
 /// Sums near the ends of an int32, of amounts as large: a float holds neither.
 template <volume_backend B>
 void accumulate_large_sums(context<B>& c, slab_route by) {
@@ -367,6 +392,7 @@ void add_accumulation_cases(cases<B>& to) {
                 add_accumulate_cases(to, prefix + "degenerate_", {route, padding::degenerate});
             }
         }
+        to.push_back({"accumulate", "direct_groups_plus_1", accumulate_groups<B>});
     }
 }
 
