@@ -49,6 +49,7 @@ enum class fault {
     accumulates_twice,
     scans_the_other_way,
     scans_whole_instead_of_half,
+    scans_whole_instead_of_none,
     scans_along_x,
     ignores_scale,
     scans_in_doubles,
@@ -65,6 +66,7 @@ enum class fault {
     sorts_all,
     samples_nearest,
     samples_a_half_off,
+    repeats_samples,
     takes_first_volume,
     voxels_too_many,
     loses_last_voxel,
@@ -98,6 +100,8 @@ struct misread {
             return load(n, glm::clamp(at, glm::ivec3(0), size(n) - 1));
         } else if constexpr (Which == fault::samples_a_half_off) {
             return inner.sample(n, place + 0.5f / sides);
+        } else if constexpr (Which == fault::repeats_samples) {
+            return inner.sample(n, glm::fract(place));
         } else {
             return inner.sample(taken(n), place);
         }
@@ -406,6 +410,8 @@ class mutant_recorder {
             how.direction = up ? scan_direction::descending : scan_direction::ascending;
         } else if (which_ == fault::scans_whole_instead_of_half) {
             how.share = how.share == scan_share::half ? scan_share::whole : how.share;
+        } else if (which_ == fault::scans_whole_instead_of_none) {
+            how.share = how.share == scan_share::none ? scan_share::whole : how.share;
         } else if (which_ == fault::scans_along_x) {
             how.axis = how.axis == scan_axis::none ? how.axis : scan_axis::x;
         } else if (which_ == fault::ignores_scale) {
@@ -500,6 +506,9 @@ class mutant_recorder {
         case fault::samples_a_half_off:
             work(misreading<K, fault::samples_a_half_off>{kernel});
             break;
+        case fault::repeats_samples:
+            work(misreading<K, fault::repeats_samples>{kernel});
+            break;
         case fault::takes_first_volume:
             work(misreading<K, fault::takes_first_volume>{kernel});
             break;
@@ -573,7 +582,9 @@ class mutant_recorder {
                                                   : key;
     }
 
-    [[nodiscard]] static range convert(range elements) { return elements; }
+    [[nodiscard]] range convert(range elements) const {
+        return {which_ == fault::ignores_first_element ? 0 : elements.first, elements.count};
+    }
     [[nodiscard]] static buffer_view<own::device> convert(const view& v) {
         return {v.buffer, v.offset, v.size};
     }
@@ -740,7 +751,9 @@ const mutation all_mutations[] = {
     {fault::reverses_elements, "reverses_elements", {"expand.compact_block"}},
     {fault::reverses_ranges, "reverses_ranges", {"map.levels_deep", "map.levels_tree"}},
     {fault::starts_levels_early, "starts_levels_early", {"map.levels_deep", "map.levels_limit"}},
-    {fault::ignores_first_element, "ignores_first_element", {"map.range_part"}},
+    {fault::ignores_first_element,
+     "ignores_first_element",
+     {"map.range_part", "accumulate.direct_compact_adds"}},
     {fault::ignores_limit_of_count,
      "ignores_limit_of_count",
      {"map.counted_above_limit", "expand.compact_counted_above_limit"}},
@@ -787,6 +800,9 @@ const mutation all_mutations[] = {
     {fault::scans_whole_instead_of_half,
      "scans_whole_instead_of_half",
      {"scan.volume_none_ascending", "scan.volume_y_descending", "scan.volume_z_sizes"}},
+    {fault::scans_whole_instead_of_none,
+     "scans_whole_instead_of_none",
+     {"scan.volume_none_descending", "scan.volume_x_ascending_float_order"}},
     {fault::scans_along_x,
      "scans_along_x",
      {"scan.volume_y_ascending", "scan.volume_z_ascending", "scan.volume_of_a_scan"}},
@@ -814,6 +830,7 @@ const mutation all_mutations[] = {
     {fault::samples_a_half_off,
      "samples_a_half_off",
      {"map.grids_one", "voxels.sizes", "draw.volumes_float16"}},
+    {fault::repeats_samples, "repeats_samples", {"map.grids_thousand", "voxels.samples_between"}},
     {fault::takes_first_volume,
      "takes_first_volume",
      {"map.grids_one", "voxels.sizes", "draw.volumes_float32"}},
