@@ -4,11 +4,16 @@
 #include <skybark/cpu/cpu.hpp>
 #include <skybark/kernels/branch_cap.hpp>
 #include <skybark/kernels/hermite_branch.hpp>
+#include <skybark/kernels/particle_impulse.hpp>
 #include <skybark/kernels/probe_level.hpp>
 #include <skybark/kernels/probe_map.hpp>
 #include <skybark/kernels/probe_rings.hpp>
+#include <skybark/kernels/probe_slabs.hpp>
 #include <skybark/kernels/probe_strips.hpp>
 #include <skybark/kernels/probe_surface.hpp>
+#include <skybark/kernels/probe_volume.hpp>
+#include <skybark/kernels/probe_volume_draw.hpp>
+#include <skybark/kernels/probe_voxels.hpp>
 #include <skybark/kernels/unit_polygon.hpp>
 
 #include "support/random.hpp"
@@ -35,12 +40,16 @@ class cpu_work {
     static constexpr std::uint32_t most = 4;
     static constexpr std::uint32_t corners = 90'000; ///< more triangles than the guard of a batch
     static constexpr std::uint32_t side = 150;
+    static constexpr std::uint32_t voxels = 40; ///< a side of the volumes
+    static constexpr std::uint32_t pairs = 40'000;
 
     explicit cpu_work(cpu::device& device) : device_(&device), random_(7) {
         make_maps();
         make_strips();
         make_branches();
         make_draw();
+        make_volumes();
+        make_words();
     }
 
     /// Records everything and returns without reading back.
@@ -59,8 +68,16 @@ class cpu_work {
                                      &count_[0], &count_[1], &rings_, &branches_, &caps_out_}) {
             all.emplace_back(b->data(), b->data() + b->size_bytes());
         }
-        for (const cpu::image* i : {&color_, &depth_}) {
+        for (const cpu::buffer* b : {&values_out_, &sizes_out_, &voxel_numbers_, &keys_[1],
+                                     &order_[1], &words_[1], &total_}) {
+            all.emplace_back(b->data(), b->data() + b->size_bytes());
+        }
+        for (const cpu::image* i : {&color_, &depth_, &volume_picture_}) {
             all.emplace_back(i->data(), i->data() + i->size_bytes());
+        }
+        for (const cpu::volume* v :
+             {&sums_, &floats_[0], &floats_[1], &halves_, &targets_[0], &targets_[1]}) {
+            all.emplace_back(v->data(), v->data() + v->size_bytes());
         }
         return all;
     }
@@ -147,6 +164,89 @@ class cpu_work {
         depth_ = expect_value(device_->create_image({side, side, image_format::depth32f}));
     }
 
+    [[nodiscard]] cpu::volume cube(volume_format format) {
+        return expect_value(device_->create_volume({voxels, voxels, voxels, format}));
+    }
+
+    void make_volumes() {
+        std::vector<kernels::probe_box> boxes(elements);
+        std::vector<cloud_particle> particles(elements);
+        std::vector<kernels::probe_place> places(elements);
+        const auto cell = [&] { return static_cast<int>(random_.below(voxels)); };
+        for (std::uint32_t i = 0; i < elements; ++i) {
+            boxes[i].low = {cell(), cell(), cell(), 5};
+            boxes[i].high = boxes[i].low + glm::ivec4(7, 6, 5, 0);
+            particles[i] = {{cell(), cell(), cell()}, 2.5f + unit(), 0.5f + 0.5f * unit(), 1, {}};
+            places[i] = {0.5f + vector(), {cell(), cell(), cell(), 0}};
+        }
+        boxes_ = put(boxes);
+        particles_ = put(particles);
+        places_ = put(places);
+        weights_ = put(std::vector<glm::vec4>(voxels, glm::vec4(0.5f)));
+        values_out_ = room<glm::vec4>(elements);
+        sizes_out_ = room<glm::ivec4>(elements);
+        voxel_numbers_ = room<std::uint32_t>(voxels * voxels * voxels);
+        sums_ = cube(volume_format::int32);
+        halves_ = cube(volume_format::float16);
+        for (int i = 0; i < 2; ++i) {
+            floats_[i] = cube(volume_format::float32);
+            targets_[i] = cube(volume_format::float32);
+        }
+        volume_picture_ = expect_value(device_->create_image({side, side, image_format::rgba32f}));
+    }
+
+    void make_words() {
+        std::vector<std::uint32_t> keys(pairs);
+        std::vector<std::uint32_t> words(pairs);
+        for (std::uint32_t i = 0; i < pairs; ++i) {
+            keys[i] = random_.bits();
+            words[i] = random_.below(100);
+        }
+        for (int i = 0; i < 2; ++i) {
+            keys_[i] = put(keys);
+            order_[i] = put(words);
+            words_[i] = put(words);
+        }
+        total_ = room<std::uint32_t>(1);
+    }
+
+    void record_volumes(cpu::recorder& r) {
+        const range all{0, elements};
+        r.accumulate(kernels::probe_slabs{5, 2, 3, 7}, {all_of(boxes_)}, all,
+                     {&sums_, true, {}, {}});
+        r.scan(sums_, floats_[0],
+               {scan_axis::z, scan_direction::ascending, scan_share::half, 0.5f});
+        kernels::particle_impulse impulse;
+        impulse.shade.slices = 20;
+        impulse.shade.profile = 1;
+        impulse.shade.grid.voxel.w = 0x1p-20f;
+        volume_scan how;
+        how.scale = 0x1p-20f;
+        r.accumulate_scan(impulse, {all_of(particles_)}, all, sums_, floats_[1], how);
+        r.accumulate_scan(impulse, {all_of(particles_)}, all, sums_, halves_, how);
+        const range some{0, elements - 7};
+        r.map(kernels::probe_volume{}, {all_of(places_), all_of(values_out_), all_of(sizes_out_)},
+              {{&floats_[1], &halves_}, {&targets_[0]}}, some);
+        kernels::probe_voxels neighbours;
+        neighbours.extent_x = voxels;
+        neighbours.extent_y = voxels;
+        r.map_voxels(neighbours, {all_of(weights_), all_of(voxel_numbers_)},
+                     {{&floats_[1], &halves_}, {&targets_[0], &targets_[1]}}, glm::uvec3(voxels));
+        draw_geometry<cpu::device> geometry;
+        geometry.count = 3000;
+        r.draw(kernels::probe_volume_draw{}, {all_of(vertices_)}, {{{&color_}}},
+               {{&floats_[1], &halves_}, {}}, geometry,
+               {&volume_picture_, nullptr, glm::vec4(0), {}}, draw_state{});
+    }
+
+    void record_words(cpu::recorder& r) {
+        r.copy(all_of(keys_[0]), all_of(keys_[1]));
+        r.copy(all_of(order_[0]), all_of(order_[1]));
+        r.sort(all_of(keys_[1]), all_of(order_[1]));
+        r.copy(all_of(words_[0]), all_of(words_[1]));
+        r.scan(all_of(words_[1]), all_of(total_));
+    }
+
     void record(cpu::recorder& r) {
         const range all{0, elements};
         r.map(kernels::probe_map{3, 5, 2, 1},
@@ -172,6 +272,8 @@ class cpu_work {
         state.blend = blend_mode::alpha; // so that the order of triangles shows
         r.draw(kernels::probe_surface{}, {all_of(vertices_), all_of(tints_)}, {}, geometry, target,
                state);
+        record_volumes(r);
+        record_words(r);
     }
 
     cpu::device* device_;
@@ -181,7 +283,10 @@ class cpu_work {
     cpu::buffer counts_, list_[2], count_[2], rings_;
     cpu::buffer ends_, segments_, caps_, polygon_, branches_, caps_out_;
     cpu::buffer vertices_, tints_;
-    cpu::image color_, depth_;
+    cpu::image color_, depth_, volume_picture_;
+    cpu::buffer boxes_, particles_, places_, weights_, values_out_, sizes_out_, voxel_numbers_;
+    cpu::volume sums_, floats_[2], halves_, targets_[2];
+    cpu::buffer keys_[2], order_[2], words_[2], total_;
 };
 
 } // namespace skybark::support

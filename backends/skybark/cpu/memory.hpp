@@ -8,6 +8,9 @@
 #include <cstring>
 #include <memory>
 
+#if __has_include(<sys/mman.h>)
+#    include <sys/mman.h>
+#endif
 #if __has_include(<unistd.h>)
 #    include <unistd.h>
 #endif
@@ -23,9 +26,20 @@ struct free_memory {
 };
 using memory = std::unique_ptr<void, free_memory>;
 
-/// Zeroed memory. The pages come from the system when they are first touched.
+/// Zeroed memory. The pages come from the system when they are first touched; large ones, where it
+/// has them, are found again faster.
 [[nodiscard]] inline memory allocate_zeroed(std::size_t bytes) {
-    return memory(std::calloc(bytes + memory_alignment, 1));
+    memory made(std::calloc(bytes + memory_alignment, 1));
+#if defined(MADV_HUGEPAGE)
+    constexpr std::size_t page = std::size_t{1} << 21;
+    void* first = made.get();
+    std::size_t space = bytes;
+    if (first != nullptr && bytes >= 4 * page && std::align(page, page, first, space) != nullptr) {
+        // Advice: where it is not taken, nothing is lost.
+        (void)madvise(first, space / page * page, MADV_HUGEPAGE);
+    }
+#endif
+    return made;
 }
 
 [[nodiscard]] inline std::byte* align_up(void* pointer) {
