@@ -98,9 +98,12 @@ TEST(volumes, callers_memory_can_be_one) {
 
 /// The nearest half, by its definition: 11 bits, exponents −14 … 15, ties to even.
 double nearest_half(double x) {
+    if (x == 0) {
+        return x;
+    }
     if (std::abs(x) < 65520) {
         const double unit = std::max(std::ldexp(1.0, std::ilogb(x) - 10), std::ldexp(1.0, -24));
-        return x == 0 ? x : std::nearbyint(x / unit) * unit;
+        return std::copysign(std::nearbyint(x / unit) * unit, x);
     }
     return std::copysign(std::numeric_limits<double>::infinity(), x);
 }
