@@ -50,11 +50,28 @@ inline void clear_volume(context& c, const bound_volume& volume) {
     c.gl.clear_tex_image(volume.texture, 0, format.format, format.type, nullptr);
 }
 
-/// How many invocations share the columns of a slab: as few as can walk slabs as large as the
-/// volume, because Mesa's software rasterisers end an invocation's loops after 65,535 rounds.
-[[nodiscard]] inline std::uint32_t lanes_of(const volume_description& size) {
-    const std::uint64_t rounds = std::uint64_t{size.width} * (std::uint64_t{size.height} + 1);
-    return static_cast<std::uint32_t>(rounds / max_rounds + 1);
+/// How an accumulation falls on groups of invocations: see accumulate.comp.
+struct slab_plan {
+    std::uint32_t lanes = 8;   ///< columns side by side
+    std::uint32_t sharing = 1; ///< groups that share a slab
+    std::uint32_t each = 0;    ///< slabs a group
+};
+
+/// As few groups an element as can walk slabs as large as the volume, because Mesa's software
+/// rasterisers end an invocation's loops after 65,535 rounds.
+[[nodiscard]] inline slab_plan plan_slabs(std::uint32_t slabs, const volume_description& size) {
+    slab_plan plan;
+    plan.each = std::min(slabs, 65535u);
+    const auto rounds = [&] {
+        const std::uint64_t columns = (size.width - 1) / (plan.lanes * plan.sharing) + 1;
+        const std::uint64_t turns = (plan.each - 1) / (16 / plan.lanes) + 1;
+        return turns * (1 + columns * (std::uint64_t{size.height} + 1));
+    };
+    while (rounds() > max_rounds) {
+        plan.each = (plan.each + 1) / 2;
+        plan.sharing *= plan.each == 1 ? 2 : 1;
+    }
+    return plan;
 }
 
 /// Every slab of every element adds to its voxels, in no order: int32 sums have none.
@@ -69,11 +86,12 @@ inline void clear_volume(context& c, const bound_volume& volume) {
     if (out.clear) {
         clear_volume(c, out.into);
     }
-    const std::uint32_t lanes = lanes_of(out.into.size);
-    const std::uint64_t each = std::uint64_t{out.slabs} * lanes;
-    if (elements.count == 0 || each == 0) {
+    if (elements.count == 0 || out.slabs == 0) {
         return {};
     }
+    const slab_plan plan = plan_slabs(out.slabs, out.into.size);
+    const std::uint32_t parts = ((out.slabs - 1) / plan.each + 1) * plan.sharing;
+    const std::uint64_t each = std::uint64_t{64} * parts; // a group of its own, as arguments count
     // The number of an invocation has 32 bits.
     const auto chunk = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
         (std::uint64_t{1} << 31) / each, 1, std::uint64_t{elements.count}));
@@ -88,7 +106,6 @@ inline void clear_volume(context& c, const bound_volume& volume) {
     bind_kernel(c, call);
     bind(c, gl::shader_storage_buffer, length_binding, elements.length);
     c.gl.bind_buffer(gl::dispatch_indirect_buffer, c.objects.arguments);
-    constexpr std::uint32_t one_slab = 1u << 16;
     for (std::uint32_t done = 0; done < elements.count;) {
         const std::uint32_t now = std::min(chunk, elements.count - done);
         if (counted) {
@@ -100,12 +117,14 @@ inline void clear_volume(context& c, const bound_volume& volume) {
                 return written;
             }
         }
-        bind_parameters(c, {elements.first + done, now, lanes, one_slab | (counted ? 1u : 0u)},
+        bind_parameters(c,
+                        {elements.first + done, now, plan.lanes | plan.sharing << 16,
+                         plan.each << 16 | (counted ? 1u : 0u)},
                         call.parameters);
         if (counted) {
             dispatch_indirect(c, *program);
         } else {
-            dispatch(c, *program, static_cast<std::uint32_t>((now * each + 63) / 64));
+            dispatch(c, *program, now * parts);
         }
         done += now;
     }

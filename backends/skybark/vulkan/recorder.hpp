@@ -76,6 +76,13 @@ struct slab_call {
     std::uint32_t slabs = 0;
 };
 
+/// How an accumulation falls on invocations: see accumulate.comp.
+struct slab_plan {
+    std::uint32_t lanes = 0;   ///< columns side by side
+    std::uint32_t sharing = 1; ///< groups that share a slab
+    std::uint32_t each = 0;    ///< slabs a group
+};
+
 /// Where pairs to sort are, or go.
 struct pair_slices {
     slice keys;
@@ -278,10 +285,7 @@ class recorder : private detail::stream {
     static constexpr std::uint32_t direct_limit = 16384;
     /// A range up to this size may share its workgroup with other ranges.
     static constexpr std::uint32_t small_range = 4096;
-    /// Invocations that share a slab, and slabs that an invocation walks: see accumulate.comp.
-    static constexpr std::uint32_t gpu_lanes = 16;
-    static constexpr std::uint32_t cpu_lanes = 8;
-    static constexpr std::uint32_t slabs_each = 1;
+    /// Software rasterisers end a shader's loops after 65,535 turns.
     static constexpr std::uint64_t most_loop_turns = 65000;
     /// Turns of the loop in levels.comp; software rasterisers end a shader's loops after 65,535.
     static constexpr std::uint32_t most_turns = 16384;
@@ -434,16 +438,23 @@ class recorder : private detail::stream {
                 {}};
     }
 
-    /// How many invocations share a slab: see accumulate.comp.
-    [[nodiscard]] std::uint32_t lanes_for(const volume_description& size) const {
-        std::uint32_t lanes = state_->shared.per_vertices() ? gpu_lanes : cpu_lanes;
+    /// Into as few groups an element as its loops allow, where they have a limit: for slabs as
+    /// large as the volume.
+    [[nodiscard]] detail::slab_plan plan_slabs(std::uint32_t slabs,
+                                               const volume_description& size) const {
+        detail::slab_plan p;
+        p.lanes = state_->shared.per_vertices() ? 16 : 4;
+        p.each = std::min(slabs, 65535u);
         const auto turns = [&] {
-            return std::uint64_t{groups_of(size.width, lanes)} * (size.height + 1) * slabs_each;
+            const std::uint64_t columns = groups_of(size.width, p.lanes * p.sharing);
+            return groups_of(p.each, 16 / p.lanes) *
+                   (1 + columns * (std::uint64_t{size.height} + 1));
         };
         while (state_->shared.on_cpu() && turns() > most_loop_turns) {
-            lanes *= 2;
+            p.each = (p.each + 1) / 2;
+            p.sharing *= p.each == 1 ? 2 : 1;
         }
-        return lanes;
+        return p;
     }
 
     void accumulate_slabs(detail::slab_call what, const accumulation<device>& out) {
@@ -451,26 +462,27 @@ class recorder : private detail::stream {
         if (out.clear) {
             clear_volume(*out.into);
         }
-        const std::uint32_t lanes = lanes_for(out.into->description());
-        const std::uint32_t works = groups_of(what.slabs, slabs_each) * lanes;
-        if (works == 0) {
+        if (what.slabs == 0) {
             return;
         }
+        const detail::slab_plan p = plan_slabs(what.slabs, out.into->description());
+        const std::uint32_t parts = groups_of(what.slabs, p.each) * p.sharing;
         const bool counted = what.length.buffer != VK_NULL_HANDLE;
         add_volume(what.pass.images, sum_volumes, out.into);
         what.pass.buffers[length_binding] = what.length;
-        const std::uint32_t most = std::max(1u, (1u << 31) / works);
+        const std::uint32_t most = std::max(64u, (1u << 31) / parts / 64 * 64);
         const std::uint32_t count = what.elements.count;
         const bool indirect = counted && count > direct_limit && count <= most;
-        const slice arguments = indirect ? arguments_for(what.length, count, works, 1) : slice{};
+        const slice arguments =
+            indirect ? arguments_for(what.length, count, 1, 64 * parts) : slice{};
         for (std::uint32_t first = 0; first < count;) {
             const std::uint32_t n = std::min(count - first, most);
-            what.pass.push.set_header({what.elements.first + first, n, lanes,
-                                       slabs_each << 16 | (counted ? detail::flag_counted : 0)});
+            what.pass.push.set_header({what.elements.first + first, n, p.lanes | p.sharing << 16,
+                                       p.each << 16 | (counted ? detail::flag_counted : 0)});
             if (indirect) {
                 dispatch_indirect(what.pass, arguments);
             } else {
-                dispatch(what.pass, groups_of(n * works, 64));
+                dispatch(what.pass, n * parts);
             }
             first += n;
         }

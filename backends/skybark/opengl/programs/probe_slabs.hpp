@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 35950c21c9dc1b3299fc03447b03bcd434ea0e51599044262a10cc3cd74f079e
+// sha256 ba5dc854615b7466e46d354a71b51f4bc01ac206151eb9dcde10d9c2c8c95fbb
 #pragma once
 
 #include <skybark/kernels/probe_slabs.hpp>
@@ -13,7 +13,7 @@ struct program<kernels::probe_slabs> {
     static constexpr std::string_view accumulate_comp = R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
-layout(local_size_x = 64) in;
+layout(local_size_x = 16) in;
 #define KERNEL_PARAMETERS uint most; int per_x; int per_z; int factor;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
@@ -81,50 +81,44 @@ int kernel_amount(uint i, float lateral, int y) {
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
-void skybark_add(uint i, uint s, uint lane, ivec3 size) {
+void skybark_add(uint i, uint s, int column, int step, ivec3 size) {
     voxel_slab slab = kernel_slab(i, s);
-    ivec2 low = clamp(slab.low, ivec2(0), size.xy);
-    ivec2 high = min(slab.high, size.xy);
-    int x = low.x + int(lane);
-    if (slab.slice < 0 || slab.slice >= size.z || x >= high.x || low.y >= high.y) {
+    if (slab.slice < 0 || slab.slice >= size.z) {
         return;
     }
-    do {
+    ivec2 low = clamp(slab.low, ivec2(0), size.xy);
+    ivec2 high = min(slab.high, size.xy);
+    for (int x = low.x + column; x < high.x; x += step) {
         float lateral = kernel_lateral(i, x, slab.slice);
-        int y = low.y;
-        do {
+        for (int y = low.y; y < high.y; ++y) {
             int amount = kernel_amount(i, lateral, y);
             if (amount != 0) { // an atomic addition is dear
                 imageAtomicAdd(skybark_sums, ivec3(x, y, slab.slice), amount);
             }
-            ++y;
-        } while (y < high.y);
-        x += int(skybark_header.z);
-    } while (x < high.x);
+        }
+    }
 }
 void main() {
+    uint lanes = skybark_header.z & 0xffffu;
+    uint sharing = skybark_header.z >> 16;
     uint each = skybark_header.w >> 16;
-    uint parts = (kernel_slabs() + each - 1u) / each;
-    uint id = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
-              gl_LocalInvocationID.x;
-    uint work = id / skybark_header.z;
-    uint lane = id - work * skybark_header.z;
-    uint k = work / parts;
+    uint parts = (kernel_slabs() + each - 1u) / each * sharing;
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    uint k = group / parts;
     uint i = skybark_header.x + k;
     bool counted = (skybark_header.w & 1u) != 0u;
     if (k >= skybark_header.y || (counted && i >= skybark_length[0])) {
         return;
     }
-    uint s = (work - k * parts) * each;
-    uint last = min(s + each, kernel_slab_count(i));
-    if (s >= last) {
-        return;
-    }
+    uint part = group - k * parts;
+    uint slot = gl_LocalInvocationID.x / lanes;
+    uint column = part % sharing * lanes + gl_LocalInvocationID.x - slot * lanes;
+    uint first = part / sharing * each;
+    uint last = min(first + each, kernel_slab_count(i));
     ivec3 size = imageSize(skybark_sums);
-    do {
-        skybark_add(i, s, lane, size);
-        ++s;
-    } while (s < last);
+    for (uint s = first + slot; s < last; s += 16u / lanes) {
+        skybark_add(i, s, int(column), int(lanes * sharing), size);
+    }
 }
 )glsl";
     static constexpr std::string_view slabs_vert = R"glsl(#version 450

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 82f806c8a4ad796eac021ce4cc4112a0f3820383cfd7df5a7ccc6d7c507de394
+// sha256 906b04c095b17510df1f4dafff823bfcf0da9c9bcf17c1a84f2501137b80459f
 #pragma once
 
 #include <skybark/kernels/shadow_polygon.hpp>
@@ -13,7 +13,7 @@ struct program<kernels::shadow_polygon> {
     static constexpr std::string_view accumulate_comp = R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
-layout(local_size_x = 64) in;
+layout(local_size_x = 16) in;
 struct surface_vertex {
     vec3 position;
     float u;
@@ -281,50 +281,44 @@ int kernel_amount(uint i, float lateral, int y) {
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
-void skybark_add(uint i, uint s, uint lane, ivec3 size) {
+void skybark_add(uint i, uint s, int column, int step, ivec3 size) {
     voxel_slab slab = kernel_slab(i, s);
-    ivec2 low = clamp(slab.low, ivec2(0), size.xy);
-    ivec2 high = min(slab.high, size.xy);
-    int x = low.x + int(lane);
-    if (slab.slice < 0 || slab.slice >= size.z || x >= high.x || low.y >= high.y) {
+    if (slab.slice < 0 || slab.slice >= size.z) {
         return;
     }
-    do {
+    ivec2 low = clamp(slab.low, ivec2(0), size.xy);
+    ivec2 high = min(slab.high, size.xy);
+    for (int x = low.x + column; x < high.x; x += step) {
         float lateral = kernel_lateral(i, x, slab.slice);
-        int y = low.y;
-        do {
+        for (int y = low.y; y < high.y; ++y) {
             int amount = kernel_amount(i, lateral, y);
             if (amount != 0) { // an atomic addition is dear
                 imageAtomicAdd(skybark_sums, ivec3(x, y, slab.slice), amount);
             }
-            ++y;
-        } while (y < high.y);
-        x += int(skybark_header.z);
-    } while (x < high.x);
+        }
+    }
 }
 void main() {
+    uint lanes = skybark_header.z & 0xffffu;
+    uint sharing = skybark_header.z >> 16;
     uint each = skybark_header.w >> 16;
-    uint parts = (kernel_slabs() + each - 1u) / each;
-    uint id = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
-              gl_LocalInvocationID.x;
-    uint work = id / skybark_header.z;
-    uint lane = id - work * skybark_header.z;
-    uint k = work / parts;
+    uint parts = (kernel_slabs() + each - 1u) / each * sharing;
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    uint k = group / parts;
     uint i = skybark_header.x + k;
     bool counted = (skybark_header.w & 1u) != 0u;
     if (k >= skybark_header.y || (counted && i >= skybark_length[0])) {
         return;
     }
-    uint s = (work - k * parts) * each;
-    uint last = min(s + each, kernel_slab_count(i));
-    if (s >= last) {
-        return;
-    }
+    uint part = group - k * parts;
+    uint slot = gl_LocalInvocationID.x / lanes;
+    uint column = part % sharing * lanes + gl_LocalInvocationID.x - slot * lanes;
+    uint first = part / sharing * each;
+    uint last = min(first + each, kernel_slab_count(i));
     ivec3 size = imageSize(skybark_sums);
-    do {
-        skybark_add(i, s, lane, size);
-        ++s;
-    } while (s < last);
+    for (uint s = first + slot; s < last; s += 16u / lanes) {
+        skybark_add(i, s, int(column), int(lanes * sharing), size);
+    }
 }
 )glsl";
     static constexpr std::string_view slabs_vert = R"glsl(#version 450
