@@ -18,7 +18,9 @@
 // Particles lie evenly in a ball that fills the box, their radius 3 % of it, the mean depth 7.
 // Counters: particles a second; `floor`, how many times the floor of the same device it takes; and
 // `harris`, how many times faster it is than Harris's pass on the same device: of up to 3,000 of
-// the particles, and taken in proportion. Both are of the median of the iterations.
+// the particles, and taken in proportion. Both are of the median of the iterations. `cpu_ms` is
+// what all threads of the process spent on one: where the machine is busy, a better measure of a
+// device in software than the time.
 //
 // What takes long without need runs only if the filter names its particles and volume, such as
 // --benchmark_filter='clouds/relight/.*/1000000_128'. plot_relight makes a picture of the results.
@@ -30,6 +32,7 @@
 #include <skybark/clouds/harris.hpp>
 
 #include <benchmark/benchmark.h>
+#include <ctime>
 #include <functional>
 #include <map>
 #include <random>
@@ -171,6 +174,7 @@ template <volume_backend B>
 template <class Change>
 [[nodiscard]] result<double> loop(benchmark::State& state, Change&& change) {
     std::vector<double> seconds;
+    const std::clock_t before = std::clock();
     for (auto _ : state) {
         result<void> done;
         seconds.push_back(seconds_of([&] { done = change(); }));
@@ -178,6 +182,8 @@ template <class Change>
             return failure(done.error());
         }
     }
+    state.counters["cpu_ms"] = 1e3 * static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC /
+                               static_cast<double>(seconds.size());
     const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
     std::nth_element(seconds.begin(), middle, seconds.end());
     return *middle;
