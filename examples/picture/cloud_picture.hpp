@@ -45,8 +45,10 @@ struct cloud_picture_options {
     const float field = glm::radians(options.field_of_view);
     const float reach = std::max(half.y, across / aspect) * 1.12f;
     const float distance = reach / std::tan(field * 0.5f) + across;
+    // From below the base of what hangs over the ground at 0, else from its lower half.
+    const float level = low.y > 0 ? std::max(0.5f * low.y, low.y - half.y) : low.y + 0.5f * half.y;
     const glm::vec3 eye = options.eye.value_or(
-        centre + glm::vec3(0.10f * distance, -0.5f * half.y, 0.99f * distance));
+        glm::vec3(centre.x + 0.10f * distance, level, centre.z + 0.99f * distance));
     const glm::vec3 target = options.target.value_or(centre);
     const glm::vec3 ahead = glm::normalize(target - eye);
     const glm::vec3 above = std::abs(ahead.y) > 0.999f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
