@@ -124,12 +124,11 @@ openvdb::CoordBBox box_of(const openvdb::FloatGrid& grid) {
     std::uint64_t voxels = 1;
     std::array<std::uint64_t, 3> sides{};
     bool too_many = false;
-    for (int axis = 0; axis < 3; ++axis) {
-        sides[static_cast<std::size_t>(axis)] =
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        sides[axis] =
             static_cast<std::uint64_t>(std::int64_t{box.max()[axis]} - box.min()[axis] + 1);
-        const std::uint64_t side = sides[static_cast<std::size_t>(axis)];
-        too_many = too_many || side > most_voxels / voxels;
-        voxels = too_many ? voxels : voxels * side;
+        too_many = too_many || sides[axis] > most_voxels / voxels;
+        voxels = too_many ? voxels : voxels * sides[axis];
     }
     if (too_many)
         throw complaint{"has active voxels in a box of " + std::to_string(sides[0]) + " x " +
@@ -243,10 +242,11 @@ void send_density(const std::string& path, byte_sink& to) {
     dense_layers layers(*grid, box);
     grid_header header;
     for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
         header.low[axis] =
-            static_cast<float>(at.scale[axis] * (box.min()[axis] - 0.5) + at.shift[axis]);
+            static_cast<float>(at.scale[axis] * (box.min()[a] - 0.5) + at.shift[axis]);
         header.voxel[axis] = static_cast<float>(at.scale[axis]);
-        header.voxels[axis] = static_cast<std::uint32_t>(box.dim()[axis]);
+        header.voxels[axis] = static_cast<std::uint32_t>(box.dim()[a]);
     }
     to.write(std::as_bytes(std::span(&header, 1)));
     layers.for_each([&](std::span<const float> voxels) { to.write(std::as_bytes(voxels)); });
