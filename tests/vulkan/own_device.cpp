@@ -1,10 +1,12 @@
-// Bring your own device: the caller's VkDevice, command buffer, VkBuffer and VkImage.
+// Bring your own device: the caller's VkDevice, command buffer, VkBuffer and VkImage, flat or deep.
 #include "raw_vulkan.hpp"
 
 namespace skybark::testing {
 namespace {
 
+using kernels::probe_box;
 using kernels::probe_map;
+using kernels::probe_slabs;
 using kernels::probe_strips;
 using kernels::probe_surface;
 using kernels::probe_vertex;
@@ -186,6 +188,71 @@ TEST_F(own_device, draws_into_the_callers_image_and_leaves_it_in_the_layout_aske
     }
     raw->call<PFN_vkDestroyImage>("vkDestroyImage")(raw->device, image, nullptr);
     raw->call<PFN_vkFreeMemory>("vkFreeMemory")(raw->device, memory, nullptr);
+}
+
+TEST_F(own_device, adds_into_the_callers_volume_and_leaves_it_in_the_layout_asked_for) {
+    auto info = vulkan::make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+    info.imageType = VK_IMAGE_TYPE_3D;
+    info.format = VK_FORMAT_R32_SINT;
+    info.extent = {6, 5, 4};
+    info.mipLevels = info.arrayLayers = 1;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                 VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    VkImage image = VK_NULL_HANDLE;
+    ASSERT_EQ(VK_SUCCESS,
+              raw->call<PFN_vkCreateImage>("vkCreateImage")(raw->device, &info, nullptr, &image));
+    VkMemoryRequirements need{};
+    raw->call<PFN_vkGetImageMemoryRequirements>("vkGetImageMemoryRequirements")(raw->device, image,
+                                                                                &need);
+    const VkDeviceMemory memory = raw->memory_for(need);
+    ASSERT_EQ(VK_SUCCESS,
+              raw->call<PFN_vkBindImageMemory>("vkBindImageMemory")(raw->device, image, memory, 0));
+    {
+        vulkan::foreign_volume foreign;
+        foreign.image = image;
+        foreign.description = {6, 5, 4, volume_format::int32};
+        foreign.layout_before = VK_IMAGE_LAYOUT_UNDEFINED;
+        foreign.layout_after = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+        const auto sums = must(gpu->wrap(foreign));
+        const auto scanned = must(gpu->create_volume({6, 5, 4, volume_format::float32}));
+        const auto copy = must(gpu->create_buffer(6 * 5 * 4 * 4));
+        const auto boxes =
+            upload(*gpu, std::vector<probe_box>{{{0, 0, 1, 7}, {6, 5, 2, 0}}}); // 7 in layer 1
+        const VkCommandBuffer commands = raw->begin();
+        auto recorder = must(gpu->record_into(commands));
+        for (const bool clear : {true, false}) {
+            recorder.accumulate(probe_slabs{1, 0, 0, 1}, {view<device>(boxes)}, range{0, 1},
+                                accumulation<device>{&sums, clear});
+        }
+        recorder.scan(sums, scanned,
+                      volume_scan{scan_axis::y, scan_direction::descending, scan_share::whole, 1});
+        const vulkan::ticket ticket = must(gpu->finish(recorder));
+        VkBufferImageCopy region{};
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        region.imageExtent = info.extent;
+        raw->call<PFN_vkCmdCopyImageToBuffer>("vkCmdCopyImageToBuffer")(
+            commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, copy.handle(), 1, &region);
+        raw->submit_and_wait();
+        std::vector<float> attenuation(120);
+        must(gpu->download(scanned, std::as_writable_bytes(std::span(attenuation))));
+        const auto sums_now = download<std::int32_t>(*gpu, copy, 120);
+        for (std::size_t i = 0; i < 120; ++i) {
+            const bool in_layer = i / 30 == 1;
+            const auto rows_above = static_cast<float>(5 - i % 30 / 6);
+            EXPECT_EQ(sums_now[i], in_layer ? 14 : 0) << i;
+            EXPECT_EQ(attenuation[i], in_layer ? 14 * rows_above : 0) << i;
+        }
+    }
+    raw->call<PFN_vkDestroyImage>("vkDestroyImage")(raw->device, image, nullptr);
+    raw->call<PFN_vkFreeMemory>("vkFreeMemory")(raw->device, memory, nullptr);
+}
+
+TEST_F(own_device, has_volumes_of_float16_only_with_their_feature) {
+    const auto refused = gpu->create_volume({4, 4, 4, volume_format::float16});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, error_code::unavailable);
+    EXPECT_NE(refused.error().message.find("shaderStorageImageExtendedFormats"), std::string::npos);
 }
 
 TEST_F(own_device, is_refused_without_the_features_that_we_rely_on) {
