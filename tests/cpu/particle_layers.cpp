@@ -24,7 +24,7 @@ struct cloud_case {
 };
 
 const cloud_case cases[] = {
-    {"a usual cloud", {96, 40, 33}, {2, 2, 2}, 1, 6, 900},
+    {"a usual cloud", {96, 40, 33}, {2, 2, 2}, 1, 6, 900, 0x1p-22f, 0.4},
     {"voxels that are no cubes", {40, 64, 20}, {1.5f, 0.7f, 3.1f}, 0.2, 12, 300},
     {"narrower than a vector", {5, 9, 7}, {1, 1, 1}, 0.1, 4, 100},
     {"as wide as the particles", {24, 30, 30}, {1, 1, 1}, 8, 11, 60},

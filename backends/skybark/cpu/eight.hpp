@@ -138,6 +138,13 @@ struct f32 {
 [[gnu::target("avx2"), gnu::always_inline]] inline f32 without_twos(f32 x) {
     return {without_twos(x.a), without_twos(x.b), without_twos(x.c), without_twos(x.d)};
 }
+/// Whether the mask says yes in every lane.
+[[gnu::target("avx2"), gnu::always_inline]] inline bool all_of(f8 mask) {
+    return _mm256_movemask_ps(mask) == 0xff;
+}
+[[gnu::target("avx2"), gnu::always_inline]] inline bool all_of(f32 mask) {
+    return all_of(both(both(mask.a, mask.b), both(mask.c, mask.d)));
+}
 template <class V>
 [[gnu::target("avx2"), gnu::always_inline]] inline V splat(float x) {
     const f8 all = _mm256_set1_ps(x);
@@ -175,9 +182,9 @@ template <class V>
     return both(less(x, splat<V>(87.0f)), times(p, halved(halvings)));
 }
 
-/// The same where e^−x is known already.
+/// 1 − e^−x where x is less than ½.
 template <class V>
-[[gnu::target("avx2"), gnu::always_inline]] inline V one_minus_exp(V x, V exp_minus_x) {
+[[gnu::target("avx2"), gnu::always_inline]] inline V one_minus_exp_of_small(V x) {
     V p = minus(splat<V>(1.0f), times(x, splat<V>(1.0f / 9.0f)));
     p = falling_term(x, 8.0f, p);
     p = falling_term(x, 7.0f, p);
@@ -186,7 +193,20 @@ template <class V>
     p = falling_term(x, 4.0f, p);
     p = falling_term(x, 3.0f, p);
     p = falling_term(x, 2.0f, p);
-    return choose(less(x, splat<V>(0.5f)), times(x, p), minus(splat<V>(1.0f), exp_minus_x));
+    return times(x, p);
+}
+
+/// The series of ln(1 + x) for x between −¼ and 0.4, or for mantissas of others.
+template <class V>
+[[gnu::target("avx2"), gnu::always_inline]] inline V log_series(V x) {
+    const V s = over(x, plus(splat<V>(2.0f), x));
+    const V s2 = times(s, s);
+    V p = plus(times(s2, splat<V>(1.0f / 11.0f)), splat<V>(1.0f / 9.0f));
+    p = plus(times(s2, p), splat<V>(1.0f / 7.0f));
+    p = plus(times(s2, p), splat<V>(1.0f / 5.0f));
+    p = plus(times(s2, p), splat<V>(1.0f / 3.0f));
+    p = plus(times(s2, p), splat<V>(1.0f));
+    return times(times(splat<V>(2.0f), s), p);
 }
 
 template <class V>
@@ -194,15 +214,22 @@ template <class V>
     const V reduced = either(less(less_one, splat<V>(-0.25f)), less(splat<V>(0.4f), less_one));
     const V positive = most(sum, splat<V>(1.2e-38f));
     const V part = choose(reduced, minus(without_twos(positive), splat<V>(1.0f)), less_one);
-    const V s = over(part, plus(splat<V>(2.0f), part));
-    const V s2 = times(s, s);
-    V p = plus(times(s2, splat<V>(1.0f / 11.0f)), splat<V>(1.0f / 9.0f));
-    p = plus(times(s2, p), splat<V>(1.0f / 7.0f));
-    p = plus(times(s2, p), splat<V>(1.0f / 5.0f));
-    p = plus(times(s2, p), splat<V>(1.0f / 3.0f));
-    p = plus(times(s2, p), splat<V>(1.0f));
-    return plus(times(times(splat<V>(2.0f), s), p),
-                times(both(reduced, twos(positive)), splat<V>(0.693147181f)));
+    return plus(log_series(part), times(both(reduced, twos(positive)), splat<V>(0.693147181f)));
+}
+
+/// ln(e^−tau + on). Thin particles, which most are, need no second exponential.
+template <class V>
+[[gnu::target("avx2"), gnu::always_inline]] inline V log_of_product(V tau, V on) {
+    const V lost = one_minus_exp_of_small(tau);
+    const V less_one = minus(on, lost);
+    const V thin = both(less(tau, splat<V>(0.5f)),
+                        both(less(splat<V>(-0.25f), less_one), less(less_one, splat<V>(0.4f))));
+    if (all_of(thin)) {
+        return plus(log_series(less_one), splat<V>(0.0f));
+    }
+    const V through = exp_minus(tau);
+    const V whole_loss = choose(less(tau, splat<V>(0.5f)), lost, minus(splat<V>(1.0f), through));
+    return log_of_sum(plus(through, on), minus(on, whole_loss));
 }
 
 template <class V>

@@ -298,9 +298,7 @@ class particle_bins {
         f32 amount;
         if (shades_.light == 2) {
             const f32 on = times(kept, tau);
-            const f32 through = exp_minus(tau);
-            const f32 log = log_of_sum(plus(through, on), minus(on, one_minus_exp(tau, through)));
-            amount = choose(less(splat<f32>(0.0f), on), negative(log), tau);
+            amount = choose(less(splat<f32>(0.0f), on), negative(log_of_product(tau, on)), tau);
         } else {
             amount = times(tau, kept);
         }
@@ -338,6 +336,7 @@ class particle_bins {
         auto* const at = reinterpret_cast<__m256i*>(sums);
         _mm256_storeu_si256(at, _mm256_add_epi32(_mm256_loadu_si256(at), amounts));
     }
+
     /// Rows of a particle from the highest downwards, and what of it lies above each.
     struct row_run {
         std::int32_t* sums;
