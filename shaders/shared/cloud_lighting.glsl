@@ -39,7 +39,11 @@ struct scaled_scattering {
 };
 scaled_scattering scattering_without(float albedo, float forward) {
     float depth = 1.0f - albedo * forward;
-    return scaled_scattering(depth, albedo / depth, albedo * (1.0f - forward) / depth);
+    scaled_scattering scaled;
+    scaled.depth = depth;
+    scaled.single = albedo / depth;
+    scaled.diffuse = albedo * (1.0f - forward) / depth;
+    return scaled;
 }
 
 // A sort key that puts the farther one first, from a squared distance (0 or more).

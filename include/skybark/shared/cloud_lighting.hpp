@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 923b31078a5306f5e89ae066f2e58cfaf3ff4338c8b4e15d6cfc974d6d463b11
+// sha256 737115d68d50834b2058db39de8947a22a61f9b4c119d972fe016178a99e4a98
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -47,7 +47,11 @@ struct scaled_scattering {
 };
 inline scaled_scattering scattering_without(float albedo, float forward) {
     float depth = 1.0f - albedo * forward;
-    return scaled_scattering(depth, albedo / depth, albedo * (1.0f - forward) / depth);
+    scaled_scattering scaled;
+    scaled.depth = depth;
+    scaled.single = albedo / depth;
+    scaled.diffuse = albedo * (1.0f - forward) / depth;
+    return scaled;
 }
 
 // A sort key that puts the farther one first, from a squared distance (0 or more).

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f123196c1d16cfb5c14c9a1908273066700ca0de5c149d428a8705679a4b1330
+// sha256 29c3fa166c0963d46282535c4a381fd1a0b7ff396f632405d0b5b71b4ca571ba
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>
@@ -284,7 +284,11 @@ struct scaled_scattering {
 };
 scaled_scattering scattering_without(float albedo, float forward) {
     float depth = 1.0f - albedo * forward;
-    return scaled_scattering(depth, albedo / depth, albedo * (1.0f - forward) / depth);
+    scaled_scattering scaled;
+    scaled.depth = depth;
+    scaled.single = albedo / depth;
+    scaled.diffuse = albedo * (1.0f - forward) / depth;
+    return scaled;
 }
 uint farther_first(float distance2) {
     return 4294967295u - uint(floatBitsToInt(distance2));
@@ -645,7 +649,11 @@ struct scaled_scattering {
 };
 scaled_scattering scattering_without(float albedo, float forward) {
     float depth = 1.0f - albedo * forward;
-    return scaled_scattering(depth, albedo / depth, albedo * (1.0f - forward) / depth);
+    scaled_scattering scaled;
+    scaled.depth = depth;
+    scaled.single = albedo / depth;
+    scaled.diffuse = albedo * (1.0f - forward) / depth;
+    return scaled;
 }
 uint farther_first(float distance2) {
     return 4294967295u - uint(floatBitsToInt(distance2));

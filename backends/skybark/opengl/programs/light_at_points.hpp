@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1f394598acd6b2111e2a0cae4084c120f937a605762163dd356dbfd11257d45e
+// sha256 297ae8a66f453ea1e6c00ff165fb16d7f592d5dca0a4fe5e32c4f24534c0ff91
 #pragma once
 
 #include <skybark/kernels/light_at_points.hpp>
@@ -241,7 +241,7 @@ vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
     return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(-attenuation) : exp_minus(attenuation);
+    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float bilinear(float v00, float v10, float v01, float v11, float x, float z) {
     float near = v00 + (v10 - v00) * x;
@@ -542,7 +542,7 @@ vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
     return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(-attenuation) : exp_minus(attenuation);
+    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float bilinear(float v00, float v10, float v01, float v11, float x, float z) {
     float near = v00 + (v10 - v00) * x;

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 916a538565ee01e8ba64a4a8725c253a16868f5f65b73fe24737876bd8542d0b
+// sha256 237d1822d46ec0521117c506480cb056c658c8ea1e66569b9f3a43640c372e76
 #pragma once
 
 #include <skybark/kernels/lit_grid.hpp>
@@ -404,7 +404,11 @@ struct scaled_scattering {
 };
 scaled_scattering scattering_without(float albedo, float forward) {
     float depth = 1.0f - albedo * forward;
-    return scaled_scattering(depth, albedo / depth, albedo * (1.0f - forward) / depth);
+    scaled_scattering scaled;
+    scaled.depth = depth;
+    scaled.single = albedo / depth;
+    scaled.diffuse = albedo * (1.0f - forward) / depth;
+    return scaled;
 }
 uint farther_first(float distance2) {
     return 4294967295u - uint(floatBitsToInt(distance2));
@@ -984,7 +988,11 @@ struct scaled_scattering {
 };
 scaled_scattering scattering_without(float albedo, float forward) {
     float depth = 1.0f - albedo * forward;
-    return scaled_scattering(depth, albedo / depth, albedo * (1.0f - forward) / depth);
+    scaled_scattering scaled;
+    scaled.depth = depth;
+    scaled.single = albedo / depth;
+    scaled.diffuse = albedo * (1.0f - forward) / depth;
+    return scaled;
 }
 uint farther_first(float distance2) {
     return 4294967295u - uint(floatBitsToInt(distance2));

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b5484af59a4fe3321f673705fff301e282159fd14790c062dd2506dffcfe1d69
+// sha256 f858fd31c7796079ce68255208bd260fa3b141a77b740ebc50353d8aa1634948
 #pragma once
 
 #include <skybark/kernels/lit_puff.hpp>
@@ -402,7 +402,11 @@ struct scaled_scattering {
 };
 scaled_scattering scattering_without(float albedo, float forward) {
     float depth = 1.0f - albedo * forward;
-    return scaled_scattering(depth, albedo / depth, albedo * (1.0f - forward) / depth);
+    scaled_scattering scaled;
+    scaled.depth = depth;
+    scaled.single = albedo / depth;
+    scaled.diffuse = albedo * (1.0f - forward) / depth;
+    return scaled;
 }
 uint farther_first(float distance2) {
     return 4294967295u - uint(floatBitsToInt(distance2));
@@ -1000,7 +1004,11 @@ struct scaled_scattering {
 };
 scaled_scattering scattering_without(float albedo, float forward) {
     float depth = 1.0f - albedo * forward;
-    return scaled_scattering(depth, albedo / depth, albedo * (1.0f - forward) / depth);
+    scaled_scattering scaled;
+    scaled.depth = depth;
+    scaled.single = albedo / depth;
+    scaled.diffuse = albedo * (1.0f - forward) / depth;
+    return scaled;
 }
 uint farther_first(float distance2) {
     return 4294967295u - uint(floatBitsToInt(distance2));

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 71eef6f89b60aff5339e96e71f4f091e165e69bdea25d759f62bfadd7770cd5d
+// sha256 9ae27ae39242fe66712cae2edd6801119a23911e13e4890d33acde0fe387bcd5
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>
