@@ -18,8 +18,8 @@
 // the order of the elements, within an int32: sums that leave it on the way are exact with the
 // direct route alone.
 //
-// The textures that are drawn into are kept by the context: calls for volumes of the same size
-// allocate nothing.
+// The textures that are drawn into, 8 bytes a voxel and with tiles as much again, are kept by the
+// context: calls for volumes of the same size allocate nothing.
 
 #include <skybark/opengl/programs/own_add_sums.hpp>
 #include <skybark/opengl/programs/own_carry.hpp>
