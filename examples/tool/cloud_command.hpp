@@ -333,10 +333,12 @@ class cloud_maker {
         if (!sky) {
             return failure(sky.error());
         }
-        const bool is_product = options_.light == cloud_light::product;
+        // The product with the paper's profile is drawn by the paper's S = a τ P I as well.
+        const bool as_document = options_.light == cloud_light::product &&
+                                 options_.attenuation.profile == clouds::attenuation_profile::step;
         clouds::cloud_light_sources<B> light;
         light.lighting =
-            clouds::single_scattering(sun->volume.options(), sun->box, options_.phase, is_product);
+            clouds::single_scattering(sun->volume.options(), sun->box, options_.phase, as_document);
         if (options_.light == cloud_light::octaves) {
             clouds::add_octaves(light.lighting, options_.octaves);
         }
