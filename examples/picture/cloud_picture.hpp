@@ -71,7 +71,7 @@ struct cloud_picture_options {
     const glm::vec3 white = kernels::ambient_of(scene, up) +
                             glm::vec3(scene.sky.sunlight) * std::max(scene.sky.to_sun.y, 0.0f);
     const float luminance = 0.2126f * white.x + 0.7152f * white.y + 0.0722f * white.z;
-    return 0.45f / std::pow(std::max(luminance, 0.01f), 0.7f);
+    return 0.148f / std::pow(std::max(luminance, 0.01f), 0.35f);
 }
 
 /// Draws clouds, picture after picture, into images that it makes once.
