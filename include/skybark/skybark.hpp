@@ -1,7 +1,16 @@
 #pragma once
 // Skybark: GPU algorithms for natural scenes. The contract and the algorithms; add a backend:
 // <skybark/cpu/cpu.hpp>, <skybark/opengl/opengl.hpp> or <skybark/vulkan/vulkan.hpp>.
+// The reference path tracer, <skybark/clouds/path_tracer.hpp>, is for those who check.
 
+#include <skybark/clouds/attenuation_volume.hpp>
+#include <skybark/clouds/cloud_billboards.hpp>
+#include <skybark/clouds/cloud_density.hpp>
+#include <skybark/clouds/cumulus.hpp>
+#include <skybark/clouds/harris.hpp>
+#include <skybark/clouds/light_box.hpp>
+#include <skybark/clouds/multiple_scattering.hpp>
+#include <skybark/clouds/phase.hpp>
 #include <skybark/core/backend.hpp>
 #include <skybark/core/validated.hpp>
 #include <skybark/trees/bark_mesh.hpp>
