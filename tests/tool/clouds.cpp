@@ -257,6 +257,31 @@ TEST_F(tool_clouds, multiple_scattering_adds_light) {
     EXPECT_EQ(all[3].light, 1) << "beside";
 }
 
+// Clouds with much room between them, in voxels that are four to thirty times as wide as high. In
+// the depth of an endless cloud that absorbs nothing, five times the sun's irradiance is the most
+// that diffusion knows; corners that many faces light may have a little more.
+TEST_F(tool_clouds, no_cloud_of_a_field_shines_by_itself) {
+    std::string points;
+    for (int i = 0; i < 900; ++i) {
+        points += std::to_string(-4000 + 270 * (i % 30)) + ",1100," +
+                  std::to_string(-4000 + 270 * (i / 30)) + "\n";
+    }
+    for (const char* sun : {"20,90", "120,50", "120,10"}) {
+        write_file(in_folder("points.csv"), "x,y,z\n" + points);
+        const outcome o = skybark({"cloud", "cumulus_field", "--particles", "6000", "--light",
+                                   "multiple", "--volume", "32", "--sun", sun, "--probe",
+                                   in_folder("points.csv"), "-o", in_folder("light.csv")});
+        ASSERT_EQ(o.code, 0) << o.err;
+        double brightest = 0;
+        for (const probe& p : read_probes(folder / "light.csv")) {
+            EXPECT_GE(p.light, 0);
+            brightest = std::max(brightest, p.light);
+        }
+        EXPECT_GT(brightest, 1.2) << sun;
+        EXPECT_LT(brightest, 6) << sun;
+    }
+}
+
 namespace {
 
 /// A box of 8 × 10 × 12 voxels of 2 m, of density 1 above the middle and 3 below; its lowest corner
@@ -337,12 +362,13 @@ TEST_F(tool_clouds, backends_draw_the_same_picture) {
             const auto found = compare(picture, of_the_cpu.back());
             EXPECT_LT(found.mean, 1) << backend << more[1];
             EXPECT_LE(found.far, 0.005) << backend << more[1];
+            RecordProperty(backend + more[1], std::to_string(found.mean));
         }
     }
     // That it sees a difference: no two kinds of light look the same.
     for (std::size_t i = 0; i < of_the_cpu.size(); ++i) {
         for (std::size_t k = 0; k < i; ++k) {
-            EXPECT_GT(compare(of_the_cpu[i], of_the_cpu[k]).mean, 0.3) << i << ' ' << k;
+            EXPECT_GT(compare(of_the_cpu[i], of_the_cpu[k]).mean, 0.1) << i << ' ' << k;
         }
     }
 }
