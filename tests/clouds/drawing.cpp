@@ -474,15 +474,19 @@ TEST_P(drawing, depth_is_tested_and_not_written) {
             }));
         };
         const std::size_t middle = side / 2 * side + side / 2;
+        const auto expect_the_walls_depth = [&] {
+            std::vector<float> depth(side * side);
+            ASSERT_TRUE(device.download(on.depth(), std::as_writable_bytes(std::span(depth))));
+            for (const float d : depth) {
+                ASSERT_EQ(d, wall.z / wall.w);
+            }
+        };
         draw(0);
         EXPECT_NEAR(on.pixels()[middle].a, 1, 1e-4);
+        expect_the_walls_depth();
         draw(1);
         EXPECT_EQ(on.pixels()[middle].a, 0);
-        std::vector<float> depth(side * side);
-        ASSERT_TRUE(device.download(on.depth(), std::as_writable_bytes(std::span(depth))));
-        for (const float d : depth) {
-            ASSERT_EQ(d, wall.z / wall.w);
-        }
+        expect_the_walls_depth();
     });
 }
 
