@@ -61,8 +61,8 @@ void expect_plain_bits(cpu::device& device, const K& kernel,
     }
 }
 
-constexpr glm::uvec3 sizes[] = {{16, 12, 10}, {13, 7, 9}, {5, 1, 3},
-                                {1, 6, 1},    {2, 2, 2},  {9, 9, 1}};
+constexpr glm::uvec3 sizes[] = {{4, 3, 2}, {7, 4, 6}, {8, 8, 8}, {16, 12, 10}, {13, 7, 9},
+                                {5, 1, 3}, {1, 6, 1}, {2, 2, 2}, {9, 9, 1}};
 
 } // namespace
 

@@ -2,8 +2,8 @@
 // The kernels of multiple scattering that cost most, four cells of a row at a time.
 //
 // The operations and their order are those of shared/scatter.hpp and of the kernels, so the bits
-// are the same (a test compares them). Cells at the ends of a row run the plain kernel, and so does
-// everything on compilers without vector types.
+// are the same (a test compares them). What is left over of a row runs the plain kernel, and so
+// does everything on compilers without vector types.
 
 #include <skybark/cpu/bark.hpp> // lanes::floor
 #include <skybark/cpu/grids.hpp>
@@ -16,7 +16,7 @@
 
 namespace skybark::cpu {
 
-/// The balance of cells of one row, whose neighbours along x are in the grid.
+/// The balance of cells of one row, four or more of them.
 class scatter_row {
   public:
     scatter_row(const kernels::scatter_equation& equation, bool from_zero, int y, int z,
@@ -38,6 +38,8 @@ class scatter_row {
             }
         }
         side_x_ = equation.sides.x;
+        escape_x_ = shared::scatter_escape(equation.sides.w, side_x_) / side_x_;
+        last_ = static_cast<std::size_t>(size.x) - 4;
     }
 
     struct balance {
@@ -50,8 +52,8 @@ class scatter_row {
         using namespace lanes;
         const f4 here = load(here_.resistance + 4 * x);
         balance sum{load(source_ + 4 * x), splat(absorption_) * load(extinction_ + 4 * x)};
-        sum = across(sum, here, here_, x - 1, side_x_);
-        sum = across(sum, here, here_, x + 1, side_x_);
+        sum = x == 0 ? past_start(sum, here) : across(sum, here, here_, x - 1, side_x_);
+        sum = x == last_ ? past_end(sum, here) : across(sum, here, here_, x + 1, side_x_);
         for (const border& b : beyond_) {
             if (b.inside) {
                 sum = across(sum, here, b.at, x, b.side);
@@ -84,10 +86,35 @@ class scatter_row {
     [[nodiscard]] balance across(balance sum, lanes::f4 here, const rows& to, std::size_t x,
                                  float side) const {
         using namespace lanes;
-        const f4 passes =
-            splat(2.0f) / ((here + load(to.resistance + 4 * x)) * splat(side) * splat(side));
         const f4 phi = from_zero_ ? splat(0) : load(to.fluence + 4 * x);
+        return across(sum, here, load(to.resistance + 4 * x), phi, side);
+    }
+    [[nodiscard]] static balance across(balance sum, lanes::f4 here, lanes::f4 resistance,
+                                        lanes::f4 phi, float side) {
+        using namespace lanes;
+        const f4 passes = splat(2.0f) / ((here + resistance) * splat(side) * splat(side));
         return {sum.gain + passes * phi, sum.loss + passes};
+    }
+
+    /// Across to the left of the first four cells, and to the right of the last four: one of the
+    /// neighbours is beyond the border.
+    [[nodiscard]] balance past_start(balance sum, lanes::f4 here) const {
+        using namespace lanes;
+        const f4 phi = fluence(0);
+        const balance all = across(sum, here, __builtin_shufflevector(here, here, 0, 0, 1, 2),
+                                   __builtin_shufflevector(phi, phi, 0, 0, 1, 2), side_x_);
+        return escaping(sum, all, i4{-1, 0, 0, 0});
+    }
+    [[nodiscard]] balance past_end(balance sum, lanes::f4 here) const {
+        using namespace lanes;
+        const f4 phi = fluence(last_);
+        const balance all = across(sum, here, __builtin_shufflevector(here, here, 1, 2, 3, 3),
+                                   __builtin_shufflevector(phi, phi, 1, 2, 3, 3), side_x_);
+        return escaping(sum, all, i4{0, 0, 0, -1});
+    }
+    [[nodiscard]] balance escaping(balance before, balance all, lanes::i4 out) const {
+        return {lanes::choose(out, before.gain, all.gain),
+                lanes::choose(out, before.loss + lanes::splat(escape_x_), all.loss)};
     }
 
     rows here_;
@@ -95,6 +122,8 @@ class scatter_row {
     const std::byte* source_ = nullptr;
     border beyond_[4];
     float side_x_ = 1;
+    float escape_x_ = 0;
+    std::size_t last_ = 0; ///< where the last four cells begin
     float absorption_ = 0;
     bool from_zero_ = false;
 };
@@ -104,27 +133,23 @@ struct program<kernels::scatter_relax> : plain_program<kernels::scatter_relax> {
     static void voxels(const kernels::scatter_relax& kernel, glm::ivec3 first, std::uint32_t count,
                        const grids& grids) {
         using namespace lanes;
+        const int size = grids.size(1).x;
+        const int end = first.x + static_cast<int>(count);
+        if (size < 4 || first.x != 0 || end != size) {
+            plain_program::voxels(kernel, first, count, grids);
+            return;
+        }
         const scatter_row row(kernel.equation, kernel.from_zero != 0, first.y, first.z, grids);
         std::byte* const to = grids.write_row(0, first.y, first.z);
-        const int last = grids.size(1).x - 1;
-        const int end = first.x + static_cast<int>(count);
-        const int inner = std::min(end, last) - 4; // the last four that have their neighbours
-        for (int x = first.x; x < end;) {
-            if (x > 0 && x < inner + 4 && inner > 0) {
-                x = std::min(x, inner); // some of them again
-                const auto at = static_cast<std::size_t>(x);
-                const scatter_row::balance sum = row.at(at);
-                // shared::scatter_relaxed
-                const f4 now = splat(1.0f - kernel.weight) * row.fluence(at) +
-                               splat(kernel.weight) * (sum.gain / sum.loss);
-                const f4 least = splat(kernel.least);
-                const f4 kept = choose(now < least, least, now);
-                std::memcpy(to + 4 * at, &kept, sizeof kept);
-                x += 4;
-            } else {
-                kernel.voxel({x, first.y, first.z}, grids);
-                ++x;
-            }
+        for (int x = 0; x < end; x += 4) {
+            const auto at = static_cast<std::size_t>(std::min(x, end - 4)); // some of them again
+            const scatter_row::balance sum = row.at(at);
+            // shared::scatter_relaxed
+            const f4 now = splat(1.0f - kernel.weight) * row.fluence(at) +
+                           splat(kernel.weight) * (sum.gain / sum.loss);
+            const f4 least = splat(kernel.least);
+            const f4 kept = choose(now < least, least, now);
+            std::memcpy(to + 4 * at, &kept, sizeof kept);
         }
     }
 };
@@ -136,7 +161,7 @@ struct program<kernels::scatter_restrict> : plain_program<kernels::scatter_restr
         const glm::ivec3 size = grids.size(0);
         const glm::ivec3 child = kernels::first_child(first, size);
         const bool whole =
-            size.x > 1 && size.y > child.y + 1 && size.z > child.z + 1 && size.y > 1 && size.z > 1;
+            size.x >= 4 && size.y > child.y + 1 && size.z > child.z + 1 && size.y > 1 && size.z > 1;
         if (!whole) {
             plain_program::voxels(kernel, first, count, grids);
             return;
@@ -150,7 +175,7 @@ struct program<kernels::scatter_restrict> : plain_program<kernels::scatter_restr
         std::byte* const to = grids.write_row(0, first.y, first.z);
         const int end = first.x + static_cast<int>(count);
         for (int x = first.x; x < end;) {
-            if (x > 0 && x + 2 <= end && 2 * x + 4 < size.x) {
+            if (x + 2 <= end && 2 * x + 4 <= size.x) {
                 float left[2] = {0, 0};
                 for (const scatter_row& row : rows) {
                     const auto at = static_cast<std::size_t>(2 * x);
@@ -186,10 +211,10 @@ struct program<kernels::scatter_prolong> : plain_program<kernels::scatter_prolon
         std::byte* const to = grids.write_row(0, first.y, first.z);
         const int end = first.x + static_cast<int>(count);
         for (int x = first.x; x < end;) {
-            if (x >= 2 && x % 2 == 0 && x + 4 <= end && x / 2 + 2 <= last.x) {
+            if (x % 2 == 0 && x + 4 <= end && last.x >= 3) {
                 const auto at = static_cast<std::size_t>(x);
                 const auto row = [&](std::size_t i) {
-                    const f4 v = load(rows[i] + 4 * (at / 2 - 1));
+                    const f4 v = around(rows[i], at / 2, static_cast<std::size_t>(last.x));
                     return splat(0.75f) * __builtin_shufflevector(v, v, 1, 1, 2, 2) +
                            splat(0.25f) * __builtin_shufflevector(v, v, 0, 2, 1, 3);
                 };
@@ -203,6 +228,21 @@ struct program<kernels::scatter_prolong> : plain_program<kernels::scatter_prolon
                 ++x;
             }
         }
+    }
+
+  private:
+    /// Cells x − 1 … x + 2 of a row, held at its ends.
+    [[nodiscard]] static lanes::f4 around(const std::byte* row, std::size_t x, std::size_t last) {
+        using namespace lanes;
+        if (x == 0) {
+            const f4 v = load(row);
+            return __builtin_shufflevector(v, v, 0, 0, 1, 2);
+        }
+        if (x + 2 > last) {
+            const f4 v = load(row + 4 * (x - 2));
+            return __builtin_shufflevector(v, v, 1, 2, 3, 3);
+        }
+        return load(row + 4 * (x - 1));
     }
 };
 
