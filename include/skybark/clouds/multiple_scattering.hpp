@@ -24,8 +24,13 @@
 // 2014, "Flux-Limited Diffusion for Multiple Scattering in Participating Media"), but not along the
 // light, so that a layer stays exact; the second one is the resistance of empty space, from the
 // lateral width W of the box (1/W² = the mean of 1/Wx², 1/Wz²; none for an endless layer). Their
-// two factors were fitted to paths of photons in Gaussian clouds: tests/clouds/
-// multiple_scattering.cpp has the errors.
+// two factors were fitted to paths of photons in Gaussian clouds.
+//
+// Errors (tests/clouds/multiple_scattering.cpp prints the tables): transmission of layers of depth
+// 0.5…64, g 0…0.85, albedo 0.9…1: 3.4 % where it is above 0.05, 8.2 % down to 0.001. Fluence in
+// eight Gaussian clouds of depth 2…40, mean over the water: 3…14 % for g 0.75 and 0.85 and albedo
+// 0.9…1, where cells are no larger than the standard deviation of the particles. Cells twice as
+// large, in clouds as deep as 40: up to 34 %.
 //
 // Solved by full multigrid with a number of steps that depends on the sizes alone: from one cell up
 // to the finest grid, a V-cycle on each and `cycles` on the last one, the limiter in between. No
