@@ -9,7 +9,7 @@ void kernel_voxel(ivec3 at) {
     ivec3 first = first_child(at, size);
     float sum = 0.0;
     for (int c = 0; c < 8; ++c) {
-        sum += scatter_load(0, held(child_of(first, c, size), size));
+        sum += 1.0 / scatter_load(0, held(child_of(first, c, size), size));
     }
-    imageStore(kernel_targets[0], at, vec4(0.125 * sum));
+    imageStore(kernel_targets[0], at, vec4(8.0 / sum));
 }

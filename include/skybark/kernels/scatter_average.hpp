@@ -1,12 +1,14 @@
 #pragma once
-// scatter_average: a volume on a grid with cells of twice the sides.
+// scatter_average: resistances on a grid with cells of twice the sides.
 
 #include <skybark/kernels/scatter_cells.hpp>
 
 namespace skybark::kernels {
 
-/// No buffers. Volume 0, target 0: means of eight; where an odd grid ends, its last cells count
-/// twice.
+/// No buffers. Volume 0, target 0: one over the mean of one over eight, so that light finds on the
+/// coarser grid the ways through empty space that it has on the finer one. (With a plain mean the
+/// coarser grid asks for more than the finer one needs, and cycles diverge where thick matter lies
+/// beside empty space.) Where an odd grid ends, its last cells count twice.
 struct scatter_average {
     using buffers = buffer_list<>;
     static constexpr std::uint32_t volumes = 1;
@@ -18,9 +20,9 @@ struct scatter_average {
         const glm::ivec3 first = first_child(at, size);
         float sum = 0;
         for (int c = 0; c < 8; ++c) {
-            sum += grids.load(0, held(child_of(first, c, size), size));
+            sum += 1.0f / grids.load(0, held(child_of(first, c, size), size));
         }
-        grids.store(0, at, 0.125f * sum);
+        grids.store(0, at, 8.0f / sum);
     }
 };
 

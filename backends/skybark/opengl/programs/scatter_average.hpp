@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b4084537b95007d5834d1c9519316a73a27e8474550bec36a9e47c4ab834a8a9
+// sha256 391ebaee02faaa46813aa1c09504e5261afff5961980810b7aa09e982f2e5db8
 #pragma once
 
 #include <skybark/kernels/scatter_average.hpp>
@@ -78,9 +78,9 @@ void kernel_voxel(ivec3 at) {
     ivec3 first = first_child(at, size);
     float sum = 0.0;
     for (int c = 0; c < 8; ++c) {
-        sum += scatter_load(0, held(child_of(first, c, size), size));
+        sum += 1.0 / scatter_load(0, held(child_of(first, c, size), size));
     }
-    imageStore(kernel_targets[0], at, vec4(0.125 * sum));
+    imageStore(kernel_targets[0], at, vec4(8.0 / sum));
 }
 void main() {
     if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
