@@ -722,7 +722,7 @@ TEST(scattering_table, of_gaussian_clouds_slow) {
                 }
                 return sum;
             });
-            std::printf("| %.2f | %.3f | %s | %.1f / %.1f (%+.1f) | %.1f / %.1f | %.0f | %.0f | "
+            std::printf("| %.2f | %.3f | %s | %.1f / %.1f (%+.1f) | %.1f / %.1f | %.2g | %.0f | "
                         "%.0f | %.0f "
                         "|\n",
                         double(medium.mean_cosine), double(medium.albedo), c.name,
