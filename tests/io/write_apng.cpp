@@ -169,7 +169,10 @@ animation read_apng(const std::string& path) {
 class write_apng : public testing::Test {
   protected:
     void SetUp() override {
-        folder = std::filesystem::temp_directory_path() / "skybark_write_apng";
+        // One for each test: they may run at the same time.
+        folder = std::filesystem::temp_directory_path() /
+                 std::string("skybark_write_apng_")
+                     .append(testing::UnitTest::GetInstance()->current_test_info()->name());
         std::filesystem::remove_all(folder);
         std::filesystem::create_directory(folder);
     }
