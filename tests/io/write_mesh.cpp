@@ -27,8 +27,12 @@ const std::vector<surface_vertex> vertices{
 const std::vector<std::uint32_t> indices{2, 0, 1};
 
 std::string written(const char* extension, const auto& write) {
+    // One for each test: they may run at the same time.
     const std::string path =
-        (std::filesystem::temp_directory_path() / ("skybark_write_mesh" + std::string(extension)))
+        (std::filesystem::temp_directory_path() /
+         std::string("skybark_write_mesh_")
+             .append(testing::UnitTest::GetInstance()->current_test_info()->name())
+             .append(extension))
             .string();
     const auto done = write(path);
     EXPECT_TRUE(done) << done.error().message;
@@ -76,7 +80,9 @@ namespace {
 class write_obj_files : public testing::Test {
   protected:
     void SetUp() override {
-        folder = std::filesystem::temp_directory_path() / "skybark_write_obj";
+        folder = std::filesystem::temp_directory_path() /
+                 std::string("skybark_write_obj_")
+                     .append(testing::UnitTest::GetInstance()->current_test_info()->name());
         std::filesystem::remove_all(folder);
         std::filesystem::create_directory(folder);
     }
