@@ -1,4 +1,5 @@
 // The attenuation volume of a density grid, against line integrals in closed form.
+#include "support/cloud_sums.hpp"
 #include "support/devices.hpp"
 
 #include <skybark/clouds/attenuation_volume.hpp>
@@ -13,6 +14,7 @@ namespace {
 
 using namespace skybark;
 using namespace skybark::clouds;
+using support::middle_of;
 
 constexpr glm::uvec3 grid_size(48, 40, 56);
 const density_box where{{-2, -1, -3}, {2, 3, 3}, 0.8f, 1.0f};
@@ -56,16 +58,6 @@ light_box box_for(glm::vec3 sun, glm::uvec3 voxels) {
     bounds.low = where.low;
     bounds.high = where.high;
     return *fit_light_box(bounds, sun, voxels);
-}
-
-glm::dvec3 middle_of(const light_grid& grid, glm::dvec3 cells) {
-    glm::dvec3 place(glm::vec3(grid.anchor));
-    const glm::vec4 rows[] = {grid.row_x, grid.row_y, grid.row_z};
-    for (int a = 0; a < 3; ++a) {
-        place += glm::normalize(glm::dvec3(glm::vec3(rows[a]))) *
-                 (double(grid.voxel[a]) * (cells[a] - double(rows[a].w)));
-    }
-    return place;
 }
 
 class grid_attenuation : public testing::TestWithParam<const char*> {};
