@@ -14,6 +14,7 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <random>
+#include <tbb/global_control.h>
 
 using namespace skybark;
 
@@ -48,6 +49,10 @@ std::string complaint(const std::string& path) {
 class vdb : public testing::Test {
   protected:
     void SetUp() override { openvdb::initialize(); }
+
+    /// The files are made here, in the process that the reader forks. A worker of OpenVDB's that is
+    /// inside of a lock at that time is gone in the child, and the lock is never opened: no workers.
+    tbb::global_control no_workers{tbb::global_control::max_allowed_parallelism, 1};
 
     static openvdb::FloatGrid::Ptr fog(const std::string& name) {
         auto grid = openvdb::FloatGrid::create(0.0f);
