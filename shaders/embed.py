@@ -146,6 +146,7 @@ def shared_header(path):
         function = re.compile(r"^(?=(?:[a-z_]\w*)\s+[a-z_]\w*\()", re.M)
         lines = function.sub("inline ", text)
         lines = re.sub(r"^inline (struct|return|else)", r"\1", lines, flags=re.M)
+        lines = lines.replace("precise ", "")  # C++ says it to its compiler: -ffp-contract=off
         use = "".join(f"#include <skybark/shared/{n}.hpp>\n" for n in includes if n != "records")
         return (
             f"#include <skybark/shared/glsl.hpp>\n{use}\nnamespace skybark::shared {{\n\n{lines}\n"

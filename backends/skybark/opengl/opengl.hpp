@@ -14,6 +14,12 @@
 #include <skybark/opengl/programs/branch_detail.hpp>
 #include <skybark/opengl/programs/branch_join.hpp>
 #include <skybark/opengl/programs/branch_tip.hpp>
+#include <skybark/opengl/programs/bundle_count.hpp>
+#include <skybark/opengl/programs/bundle_crowds.hpp>
+#include <skybark/opengl/programs/bundle_hits.hpp>
+#include <skybark/opengl/programs/bundle_key.hpp>
+#include <skybark/opengl/programs/bundle_more.hpp>
+#include <skybark/opengl/programs/bundle_order.hpp>
 #include <skybark/opengl/programs/cast_leaf_shadow.hpp>
 #include <skybark/opengl/programs/cast_shadow.hpp>
 #include <skybark/opengl/programs/clear_sky.hpp>

@@ -10,6 +10,12 @@
 #include <skybark/vulkan/programs/branch_detail.hpp>
 #include <skybark/vulkan/programs/branch_join.hpp>
 #include <skybark/vulkan/programs/branch_tip.hpp>
+#include <skybark/vulkan/programs/bundle_count.hpp>
+#include <skybark/vulkan/programs/bundle_crowds.hpp>
+#include <skybark/vulkan/programs/bundle_hits.hpp>
+#include <skybark/vulkan/programs/bundle_key.hpp>
+#include <skybark/vulkan/programs/bundle_more.hpp>
+#include <skybark/vulkan/programs/bundle_order.hpp>
 #include <skybark/vulkan/programs/cast_leaf_shadow.hpp>
 #include <skybark/vulkan/programs/cast_shadow.hpp>
 #include <skybark/vulkan/programs/clear_sky.hpp>

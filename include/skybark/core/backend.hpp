@@ -4,7 +4,8 @@
 // A backend is a type with a buffer, an image and a recorder. A recorder appends patterns (`map`,
 // `expand`, `expand_rings`, `draw`, `sort`, `scan`, and the copies between them) to a stream that
 // the device runs in order: what one pattern wrote, the next one sees. Nothing waits for the host
-// in between. A backend with volumes adds `accumulate`, `map_voxels`, and scans along their axes.
+// in between. A backend with volumes adds `accumulate`, `map_voxels`, and scans along their axes;
+// one that rasterises depths adds `peel`.
 //
 // What holds on every backend:
 //  - Order. Output comes in input order, then strip, then triangle. Two backends' results compare
@@ -228,6 +229,20 @@ struct draw_geometry {
     buffer_view<B> length;         ///< a count_record
 };
 
+/// What `peel` takes and gives: one word a pixel, row after row, the first row at clip y = −1.
+template <class B>
+struct peeled_layer {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    /// Floats. Before: the depth of the layer that was peeled last, 1 where none was; a pixel that
+    /// had no fragment left is 0. After: of this one, 0 where there is none.
+    buffer_view<B> depth;
+    /// Numbers of triangles; all bits where there is none.
+    buffer_view<B> triangle;
+    /// A count_record: `written` and `required` become the number of pixels that have a fragment.
+    buffer_view<B> count;
+};
+
 template <class B, draw_kernel K>
 using image_bindings = std::array<sampled_image<B>, K::images>;
 
@@ -306,12 +321,16 @@ concept scans = backend<B> &&
 };
 
 /// Pairs of a 32-bit key and a 32-bit value, in place, by growing key; equal keys keep their order.
-/// As many pairs as both views have, or the first ones, of a number that the device knows.
+/// As many pairs as both views have, or the first ones, of a number that the device knows. A caller
+/// who knows that keys are below 2^key_bits may say so: fewer bits take less time.
 template <class B>
-concept sorts = backend<B> && requires(typename B::recorder& r, buffer_view<B> keys,
-                                       buffer_view<B> values, counted<B> pairs) {
+concept sorts = backend<B> &&
+    requires(typename B::recorder& r, buffer_view<B> keys, buffer_view<B> values, counted<B> pairs,
+             std::uint32_t key_bits) {
     {r.sort(keys, values)};
     {r.sort(keys, values, pairs)};
+    {r.sort(keys, values, key_bits)};
+    {r.sort(keys, values, pairs, key_bits)};
 };
 
 /// Volumes: 3-D images of numbers. A new volume's content is undefined. `scan` takes int32 or
@@ -366,6 +385,34 @@ concept draws_volumes = volume_backend<B> && draw_kernel<K> && names_volumes<K> 
     requires(typename B::recorder& r, const K& k, bindings<B, K> b, image_bindings<B, K> images,
              volume_bindings<B, K> v) {
     {r.draw(k, b, images, v, draw_geometry<B>{}, draw_target<B>{}, draw_state{})};
+};
+
+/// The next layer of depths: of the fragments of triangles [first, first + count) at the middle of
+/// each pixel that are nearer than the layer before (clip z below its depth), the farthest, and
+/// whose it is: of fragments of the same depth, any. Depths are 0…1, near to far; what is beyond
+/// them is not drawn; triangles have no back here. A fragment of depth 0 is not drawn either.
+template <class B, class K>
+concept peels = backend<B> && peel_kernel<K> &&
+    requires(typename B::recorder& r, const K& k, bindings<B, K> b) {
+    {r.peel(k, b, range{}, peeled_layer<B>{})};
+};
+
+/// What a bundle is resolved from and into. Triangles are numbered from the start of their view.
+template <class B>
+struct bundle_work {
+    buffer_view<B> triangles; ///< gather_triangle
+    buffer_view<B> alpha;     ///< words: alpha_coordinates and maps; empty: no holes anywhere
+    buffer_view<B> samples;   ///< gather_sample
+    buffer_view<B> hits;      ///< gather_hit, one a sample
+};
+
+/// A backend may resolve a bundle of rays in one go: what each sample meets first along the
+/// direction, or against it where its normal points that way. gather/bundle_resolver.hpp says it in
+/// full, and does it with the patterns above where this is missing. The result has the same bits.
+template <class B>
+concept resolves_bundles = backend<B> &&
+    requires(typename B::recorder& r, const ray_bundle& bundle, const bundle_work<B>& work) {
+    {r.resolve(bundle, work)};
 };
 
 /// Records with `record(recorder)`, submits and waits.

@@ -42,6 +42,8 @@
 //               `images.size(n)`, `images.fetch(n, ivec2)`, `images.sample(n, vec2)`, and, where
 //               the kernel names `volumes`, `images.volume_size(n)`, `images.volume_load(n, ivec3)`
 //               and `images.volume(n, vec3)` as above.
+//   peel        `vec4 corner(uint32 index, spans…) const` returns the clip position (as above, with
+//               w = 1) of corner index % 3 of triangle index / 3.
 
 #include <skybark/core/records.hpp>
 
@@ -175,6 +177,10 @@ concept has_voxel_function = requires(const K& k, const any_grids& grids,
     k.voxel(glm::ivec3{}, grids, spans...);
 };
 template <class K, class... Slots>
+concept has_corner_function = requires(const K& k, std::uint32_t i, typename Slots::span... spans) {
+    { k.corner(i, spans...) } -> std::same_as<glm::vec4>;
+};
+template <class K, class... Slots>
 concept has_draw_functions = requires(const K& k, std::uint32_t i, typename Slots::span... spans,
                                       std::array<glm::vec4, K::varyings>& out,
                                       const std::array<glm::vec4, K::varyings>& in,
@@ -196,6 +202,7 @@ struct functions<K, buffer_list<Slots...>> {
     static constexpr bool slab = has_slab_functions<K, Slots...>;
     static constexpr bool grid_map = has_grid_map_function<K, Slots...>;
     static constexpr bool voxel = has_voxel_function<K, Slots...>;
+    static constexpr bool corner = has_corner_function<K, Slots...>;
 };
 } // namespace detail
 
@@ -213,6 +220,9 @@ concept ring_kernel = kernel<K> && vertex_record<typename K::vertex> &&
     detail::functions<K, typename K::buffers>::ring;
 template <class K>
 concept draw_kernel = kernel<K> && detail::functions<K, typename K::buffers>::draw;
+
+template <class K>
+concept peel_kernel = kernel<K> && detail::functions<K, typename K::buffers>::corner;
 
 template <class K>
 concept slab_kernel = kernel<K> && detail::functions<K, typename K::buffers>::slab;

@@ -138,4 +138,91 @@ struct light_grid {
 };
 static_assert(sizeof(light_grid) == 80);
 
+/// A triangle that light meets. Its front is where a, b, c go round counter-clockwise.
+struct gather_triangle {
+    glm::vec3 a{0};             ///< m
+    std::uint32_t material = 0; ///< index of a gather_material
+    glm::vec3 b{0};             ///< m
+    std::uint32_t alpha = 0;    ///< 0: no holes; n: the n-th alpha_coordinates (from 1) say where
+    glm::vec3 c{0};             ///< m
+    std::uint32_t reserved = 0;
+};
+static_assert(sizeof(gather_triangle) == 48);
+static_assert(offsetof(gather_triangle, material) == 12 && offsetof(gather_triangle, b) == 16 &&
+              offsetof(gather_triangle, alpha) == 28 && offsetof(gather_triangle, c) == 32);
+
+/// What a surface does with light. Diffuse: both parts leave evenly in all directions.
+struct gather_material {
+    glm::vec3 diffuse{0.5f};     ///< reflected of what arrives, 0…1
+    std::uint32_t two_sided = 0; ///< 1: the back reflects and emits as well; 0: it is black
+    glm::vec3 emission{0};       ///< radiance that leaves by itself, W/(m² sr)
+    float reserved0 = 0;
+    glm::vec3 transmission{0}; ///< leaves on the other side, of what arrives, 0…1; needs two sides
+    float reserved1 = 0;
+};
+static_assert(sizeof(gather_material) == 48);
+static_assert(offsetof(gather_material, two_sided) == 12 &&
+              offsetof(gather_material, emission) == 16 &&
+              offsetof(gather_material, transmission) == 32);
+
+/// Where a triangle's holes are: its corners' places in an alpha map, and where that map lies in
+/// the same buffer of words: one word a texel, a float, row after row from `map` on. Places 0…1 are
+/// edge to edge of the map and repeat beyond it; row 0 is v = 0. There is a hole where the nearest
+/// texel is below `cutoff`.
+struct alpha_coordinates {
+    glm::vec2 a{0};
+    glm::vec2 b{0};
+    glm::vec2 c{0};
+    std::uint32_t map = 0;  ///< index of the first texel's word
+    std::uint32_t size = 0; ///< width + 65536 · height, texels
+    float cutoff = 0.5f;
+    std::uint32_t reserved[3] = {0, 0, 0};
+};
+static_assert(sizeof(alpha_coordinates) == 48);
+static_assert(offsetof(alpha_coordinates, map) == 24 && offsetof(alpha_coordinates, cutoff) == 32);
+
+/// A point that asks for light.
+struct gather_sample {
+    glm::vec3 position{0}; ///< m
+    float reserved0 = 0;
+    glm::vec3 normal{0}; ///< unit: it sees the half space that this points into
+    float reserved1 = 0;
+};
+static_assert(sizeof(gather_sample) == 32);
+static_assert(offsetof(gather_sample, normal) == 16);
+
+/// What a sample meets along one direction.
+struct gather_hit {
+    float distance = 1e30f; ///< m; 1e30: nothing
+    std::uint32_t surface =
+        0xffffffffu; ///< 2 · triangle, + 1 where its back is seen; all bits: none
+    float u = 0;     ///< barycentric weight of the triangle's b
+    float v = 0;     ///< … and of its c
+};
+static_assert(sizeof(gather_hit) == 16);
+inline constexpr std::uint32_t no_surface = 0xffffffffu;
+inline constexpr float no_distance = 1e30f;
+
+/// Rays that are all parallel: one direction for all samples (Hachisuka 2005, "global ray bundle").
+/// What lies across it is measured from the middle of the scene: x and y in metres, z towards
+/// growing distance; the scene's x and y lie in −half … half.
+struct ray_bundle {
+    glm::vec4 centre{0};             ///< xyz: middle of the scene, m; w: half, m
+    glm::vec4 right{1, 0, 0, 0};     ///< xyz: unit, +x; w: the lift: how far, in m, samples stand
+                                     ///< off along their normals
+    glm::vec4 up{0, 1, 0, 0};        ///< xyz: unit, +y; w: cells of the finest grid in a metre
+    glm::vec4 direction{0, 0, 1, 0}; ///< xyz: unit, +z; w: cells on a side of the finest grid
+};
+static_assert(sizeof(ray_bundle) == 64);
+
+/// Where the light that leaves a triangle is kept: patches, `rows`² equal triangles a side. Those
+/// of the front begin at `front`, those of the back at `back`, or no_surface: the back is black.
+struct patch_table {
+    std::uint32_t front = 0;
+    std::uint32_t back = no_surface;
+    std::uint32_t rows = 1;
+    std::uint32_t reserved = 0;
+};
+static_assert(sizeof(patch_table) == 16);
+
 } // namespace skybark

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ab1c60c9996e5a4cf17c2075edbd51879097b05e21766f80b847b0c12f48b46e
+// sha256 446c8435d80540dae0a8261980695062fc7db17a103f102ca0661aacab837937
 #pragma once
 
 #include <skybark/kernels/clear_sky.hpp>
@@ -121,6 +121,46 @@ struct light_grid {
     vec4 row_y;
     vec4 row_z;
     vec4 voxel;
+};
+struct gather_triangle {
+    vec3 a;
+    uint material;
+    vec3 b;
+    uint alpha;
+    vec3 c;
+    uint reserved;
+};
+struct gather_material {
+    vec3 diffuse;
+    uint two_sided;
+    vec3 emission;
+    float reserved0;
+    vec3 transmission;
+    float reserved1;
+};
+struct gather_sample {
+    vec3 position;
+    float reserved0;
+    vec3 normal;
+    float reserved1;
+};
+struct gather_hit {
+    float distance;
+    uint surface;
+    float u;
+    float v;
+};
+struct ray_bundle {
+    vec4 centre;
+    vec4 right;
+    vec4 up;
+    vec4 direction;
+};
+struct patch_table {
+    uint front;
+    uint back;
+    uint rows;
+    uint reserved;
 };
 struct daylight_sky {
     vec4 a; // Perez' coefficients: x for Y, y for x, z for y
@@ -401,6 +441,46 @@ struct light_grid {
     vec4 row_y;
     vec4 row_z;
     vec4 voxel;
+};
+struct gather_triangle {
+    vec3 a;
+    uint material;
+    vec3 b;
+    uint alpha;
+    vec3 c;
+    uint reserved;
+};
+struct gather_material {
+    vec3 diffuse;
+    uint two_sided;
+    vec3 emission;
+    float reserved0;
+    vec3 transmission;
+    float reserved1;
+};
+struct gather_sample {
+    vec3 position;
+    float reserved0;
+    vec3 normal;
+    float reserved1;
+};
+struct gather_hit {
+    float distance;
+    uint surface;
+    float u;
+    float v;
+};
+struct ray_bundle {
+    vec4 centre;
+    vec4 right;
+    vec4 up;
+    vec4 direction;
+};
+struct patch_table {
+    uint front;
+    uint back;
+    uint rows;
+    uint reserved;
 };
 struct daylight_sky {
     vec4 a; // Perez' coefficients: x for Y, y for x, z for y

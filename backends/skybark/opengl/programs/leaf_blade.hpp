@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 2461e7d34e8cb64f02d4f46b3e67bb91cc5c1fee78531cedf15d07d4fe519c44
+// sha256 fcc4da0cedd1772b08f33db2615b4e3f1f863e0732c6dd16138e9814f3a608a6
 #pragma once
 
 #include <skybark/kernels/leaf_blade.hpp>
@@ -128,6 +128,46 @@ struct light_grid {
     vec4 row_y;
     vec4 row_z;
     vec4 voxel;
+};
+struct gather_triangle {
+    vec3 a;
+    uint material;
+    vec3 b;
+    uint alpha;
+    vec3 c;
+    uint reserved;
+};
+struct gather_material {
+    vec3 diffuse;
+    uint two_sided;
+    vec3 emission;
+    float reserved0;
+    vec3 transmission;
+    float reserved1;
+};
+struct gather_sample {
+    vec3 position;
+    float reserved0;
+    vec3 normal;
+    float reserved1;
+};
+struct gather_hit {
+    float distance;
+    uint surface;
+    float u;
+    float v;
+};
+struct ray_bundle {
+    vec4 centre;
+    vec4 right;
+    vec4 up;
+    vec4 direction;
+};
+struct patch_table {
+    uint front;
+    uint back;
+    uint rows;
+    uint reserved;
 };
 vec3 quaternion_x(vec4 q) {
     return vec3(1.0f - 2.0f * (q.y * q.y + q.z * q.z), 2.0f * (q.x * q.y + q.w * q.z),
@@ -582,6 +622,46 @@ struct light_grid {
     vec4 row_y;
     vec4 row_z;
     vec4 voxel;
+};
+struct gather_triangle {
+    vec3 a;
+    uint material;
+    vec3 b;
+    uint alpha;
+    vec3 c;
+    uint reserved;
+};
+struct gather_material {
+    vec3 diffuse;
+    uint two_sided;
+    vec3 emission;
+    float reserved0;
+    vec3 transmission;
+    float reserved1;
+};
+struct gather_sample {
+    vec3 position;
+    float reserved0;
+    vec3 normal;
+    float reserved1;
+};
+struct gather_hit {
+    float distance;
+    uint surface;
+    float u;
+    float v;
+};
+struct ray_bundle {
+    vec4 centre;
+    vec4 right;
+    vec4 up;
+    vec4 direction;
+};
+struct patch_table {
+    uint front;
+    uint back;
+    uint rows;
+    uint reserved;
 };
 vec3 quaternion_x(vec4 q) {
     return vec3(1.0f - 2.0f * (q.y * q.y + q.z * q.z), 2.0f * (q.x * q.y + q.w * q.z),

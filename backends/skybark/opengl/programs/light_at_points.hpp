@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 297ae8a66f453ea1e6c00ff165fb16d7f592d5dca0a4fe5e32c4f24534c0ff91
+// sha256 56554bfd988868082453ad45c0ca6175913a4c2fc0525c451e4bf1bf16e37a10
 #pragma once
 
 #include <skybark/kernels/light_at_points.hpp>
@@ -77,6 +77,46 @@ struct light_grid {
     vec4 row_y;
     vec4 row_z;
     vec4 voxel;
+};
+struct gather_triangle {
+    vec3 a;
+    uint material;
+    vec3 b;
+    uint alpha;
+    vec3 c;
+    uint reserved;
+};
+struct gather_material {
+    vec3 diffuse;
+    uint two_sided;
+    vec3 emission;
+    float reserved0;
+    vec3 transmission;
+    float reserved1;
+};
+struct gather_sample {
+    vec3 position;
+    float reserved0;
+    vec3 normal;
+    float reserved1;
+};
+struct gather_hit {
+    float distance;
+    uint surface;
+    float u;
+    float v;
+};
+struct ray_bundle {
+    vec4 centre;
+    vec4 right;
+    vec4 up;
+    vec4 direction;
+};
+struct patch_table {
+    uint front;
+    uint back;
+    uint rows;
+    uint reserved;
 };
 #define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation; float diffuse;
 #ifdef SKYBARK_VULKAN
@@ -378,6 +418,46 @@ struct light_grid {
     vec4 row_y;
     vec4 row_z;
     vec4 voxel;
+};
+struct gather_triangle {
+    vec3 a;
+    uint material;
+    vec3 b;
+    uint alpha;
+    vec3 c;
+    uint reserved;
+};
+struct gather_material {
+    vec3 diffuse;
+    uint two_sided;
+    vec3 emission;
+    float reserved0;
+    vec3 transmission;
+    float reserved1;
+};
+struct gather_sample {
+    vec3 position;
+    float reserved0;
+    vec3 normal;
+    float reserved1;
+};
+struct gather_hit {
+    float distance;
+    uint surface;
+    float u;
+    float v;
+};
+struct ray_bundle {
+    vec4 centre;
+    vec4 right;
+    vec4 up;
+    vec4 direction;
+};
+struct patch_table {
+    uint front;
+    uint back;
+    uint rows;
+    uint reserved;
 };
 #define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation; float diffuse;
 #ifdef SKYBARK_VULKAN

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1007da7e5fbded8fe7191c883041fff13cf018d74b92a88a790828ae795ad0c0
+// sha256 a2d7c85955537f9059660f1f79bbe0781e4a69ccdcd0a7bb630df80a2d96ba2a
 #pragma once
 
 #include <skybark/kernels/pose_ends.hpp>
@@ -121,6 +121,46 @@ struct light_grid {
     vec4 row_y;
     vec4 row_z;
     vec4 voxel;
+};
+struct gather_triangle {
+    vec3 a;
+    uint material;
+    vec3 b;
+    uint alpha;
+    vec3 c;
+    uint reserved;
+};
+struct gather_material {
+    vec3 diffuse;
+    uint two_sided;
+    vec3 emission;
+    float reserved0;
+    vec3 transmission;
+    float reserved1;
+};
+struct gather_sample {
+    vec3 position;
+    float reserved0;
+    vec3 normal;
+    float reserved1;
+};
+struct gather_hit {
+    float distance;
+    uint surface;
+    float u;
+    float v;
+};
+struct ray_bundle {
+    vec4 centre;
+    vec4 right;
+    vec4 up;
+    vec4 direction;
+};
+struct patch_table {
+    uint front;
+    uint back;
+    uint rows;
+    uint reserved;
 };
 vec3 quaternion_x(vec4 q) {
     return vec3(1.0f - 2.0f * (q.y * q.y + q.z * q.z), 2.0f * (q.x * q.y + q.w * q.z),
@@ -338,6 +378,46 @@ struct light_grid {
     vec4 row_y;
     vec4 row_z;
     vec4 voxel;
+};
+struct gather_triangle {
+    vec3 a;
+    uint material;
+    vec3 b;
+    uint alpha;
+    vec3 c;
+    uint reserved;
+};
+struct gather_material {
+    vec3 diffuse;
+    uint two_sided;
+    vec3 emission;
+    float reserved0;
+    vec3 transmission;
+    float reserved1;
+};
+struct gather_sample {
+    vec3 position;
+    float reserved0;
+    vec3 normal;
+    float reserved1;
+};
+struct gather_hit {
+    float distance;
+    uint surface;
+    float u;
+    float v;
+};
+struct ray_bundle {
+    vec4 centre;
+    vec4 right;
+    vec4 up;
+    vec4 direction;
+};
+struct patch_table {
+    uint front;
+    uint back;
+    uint rows;
+    uint reserved;
 };
 vec3 quaternion_x(vec4 q) {
     return vec3(1.0f - 2.0f * (q.y * q.y + q.z * q.z), 2.0f * (q.x * q.y + q.w * q.z),

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 57af2ca3530d50f830009ed40ba4583cefeb752da44f90da7356d9c05dd468f4
+// sha256 252905f9812b85557c008fa874caa791e117f6801c67362b704c4ee7912815ef
 #pragma once
 
 #include <skybark/kernels/shadow_slab.hpp>
@@ -80,6 +80,46 @@ struct light_grid {
     vec4 row_y;
     vec4 row_z;
     vec4 voxel;
+};
+struct gather_triangle {
+    vec3 a;
+    uint material;
+    vec3 b;
+    uint alpha;
+    vec3 c;
+    uint reserved;
+};
+struct gather_material {
+    vec3 diffuse;
+    uint two_sided;
+    vec3 emission;
+    float reserved0;
+    vec3 transmission;
+    float reserved1;
+};
+struct gather_sample {
+    vec3 position;
+    float reserved0;
+    vec3 normal;
+    float reserved1;
+};
+struct gather_hit {
+    float distance;
+    uint surface;
+    float u;
+    float v;
+};
+struct ray_bundle {
+    vec4 centre;
+    vec4 right;
+    vec4 up;
+    vec4 direction;
+};
+struct patch_table {
+    uint front;
+    uint back;
+    uint rows;
+    uint reserved;
 };
 #define KERNEL_PARAMETERS light_grid grid; float sigmas; float forward; uint light; uint profile; uint slices;
 #define VERTEX_VEC4S 1
@@ -414,6 +454,46 @@ struct light_grid {
     vec4 row_z;
     vec4 voxel;
 };
+struct gather_triangle {
+    vec3 a;
+    uint material;
+    vec3 b;
+    uint alpha;
+    vec3 c;
+    uint reserved;
+};
+struct gather_material {
+    vec3 diffuse;
+    uint two_sided;
+    vec3 emission;
+    float reserved0;
+    vec3 transmission;
+    float reserved1;
+};
+struct gather_sample {
+    vec3 position;
+    float reserved0;
+    vec3 normal;
+    float reserved1;
+};
+struct gather_hit {
+    float distance;
+    uint surface;
+    float u;
+    float v;
+};
+struct ray_bundle {
+    vec4 centre;
+    vec4 right;
+    vec4 up;
+    vec4 direction;
+};
+struct patch_table {
+    uint front;
+    uint back;
+    uint rows;
+    uint reserved;
+};
 #define KERNEL_PARAMETERS light_grid grid; float sigmas; float forward; uint light; uint profile; uint slices;
 #define VERTEX_VEC4S 1
 #ifdef SKYBARK_VULKAN
@@ -735,6 +815,46 @@ struct light_grid {
     vec4 row_y;
     vec4 row_z;
     vec4 voxel;
+};
+struct gather_triangle {
+    vec3 a;
+    uint material;
+    vec3 b;
+    uint alpha;
+    vec3 c;
+    uint reserved;
+};
+struct gather_material {
+    vec3 diffuse;
+    uint two_sided;
+    vec3 emission;
+    float reserved0;
+    vec3 transmission;
+    float reserved1;
+};
+struct gather_sample {
+    vec3 position;
+    float reserved0;
+    vec3 normal;
+    float reserved1;
+};
+struct gather_hit {
+    float distance;
+    uint surface;
+    float u;
+    float v;
+};
+struct ray_bundle {
+    vec4 centre;
+    vec4 right;
+    vec4 up;
+    vec4 direction;
+};
+struct patch_table {
+    uint front;
+    uint back;
+    uint rows;
+    uint reserved;
 };
 #define KERNEL_PARAMETERS light_grid grid; float sigmas; float forward; uint light; uint profile; uint slices;
 #define VERTEX_VEC4S 1
@@ -1061,6 +1181,46 @@ struct light_grid {
     vec4 row_y;
     vec4 row_z;
     vec4 voxel;
+};
+struct gather_triangle {
+    vec3 a;
+    uint material;
+    vec3 b;
+    uint alpha;
+    vec3 c;
+    uint reserved;
+};
+struct gather_material {
+    vec3 diffuse;
+    uint two_sided;
+    vec3 emission;
+    float reserved0;
+    vec3 transmission;
+    float reserved1;
+};
+struct gather_sample {
+    vec3 position;
+    float reserved0;
+    vec3 normal;
+    float reserved1;
+};
+struct gather_hit {
+    float distance;
+    uint surface;
+    float u;
+    float v;
+};
+struct ray_bundle {
+    vec4 centre;
+    vec4 right;
+    vec4 up;
+    vec4 direction;
+};
+struct patch_table {
+    uint front;
+    uint back;
+    uint rows;
+    uint reserved;
 };
 #define KERNEL_PARAMETERS light_grid grid; float sigmas; float forward; uint light; uint profile; uint slices;
 #define VERTEX_VEC4S 1
@@ -1403,6 +1563,46 @@ struct light_grid {
     vec4 row_y;
     vec4 row_z;
     vec4 voxel;
+};
+struct gather_triangle {
+    vec3 a;
+    uint material;
+    vec3 b;
+    uint alpha;
+    vec3 c;
+    uint reserved;
+};
+struct gather_material {
+    vec3 diffuse;
+    uint two_sided;
+    vec3 emission;
+    float reserved0;
+    vec3 transmission;
+    float reserved1;
+};
+struct gather_sample {
+    vec3 position;
+    float reserved0;
+    vec3 normal;
+    float reserved1;
+};
+struct gather_hit {
+    float distance;
+    uint surface;
+    float u;
+    float v;
+};
+struct ray_bundle {
+    vec4 centre;
+    vec4 right;
+    vec4 up;
+    vec4 direction;
+};
+struct patch_table {
+    uint front;
+    uint back;
+    uint rows;
+    uint reserved;
 };
 #define KERNEL_PARAMETERS light_grid grid; float sigmas; float forward; uint light; uint profile; uint slices;
 #define VERTEX_VEC4S 1

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5dd64f31c9c01e3065700dc7a96886dfc644e5344224d4810cd9bd54d1f1cd71
+// sha256 783dddba1351713b6a1b89c5dc07e686de01e785bc80260a533fcd84ebeb5b67
 #pragma once
 
 #include <skybark/kernels/bark.hpp>

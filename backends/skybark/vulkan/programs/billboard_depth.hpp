@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 9ae27ae39242fe66712cae2edd6801119a23911e13e4890d33acde0fe387bcd5
+// sha256 a46c091793ec5e7e2bbd1cb1e68aaa68b6fea51ca4d6231b494884d4c53cb256
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 801297c31b44c3d9b8ad02190f23f5fb084632398c27bb353587f8871dce7e82
+// sha256 a2380499d29559f39a7c9cd5734b100338375933a9da413276742b623278d364
 #pragma once
 
 #include <skybark/kernels/branch_cap.hpp>

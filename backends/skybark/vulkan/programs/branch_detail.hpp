@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 3bee553ff6c5a96c65b672dab47ca0d25966e3b2bf270f0c3f616f48b57b5d4a
+// sha256 32f8c23ee0c980946b27bec0fc2cea4047060599ea2e445459b8ad41b935d841
 #pragma once
 
 #include <skybark/kernels/branch_detail.hpp>

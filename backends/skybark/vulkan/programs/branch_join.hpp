@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 78ed8f9674be05e5d4ae2aedc4b69ec6b31200da5881b4cba234b37b8f0f166a
+// sha256 d9512ad98d0b8ae76fee992f42a5dd29c4c32fc45b3b3857c6714e9485b997ba
 #pragma once
 
 #include <skybark/kernels/branch_join.hpp>

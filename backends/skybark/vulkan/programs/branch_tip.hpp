@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 603d270484eeb44600c7b9f42a1f407e747af63d3f336a454c2b6487c71c709f
+// sha256 34f6dbfd8882132045243747e41f3800b6e5e5db12ccb6ac89be1e3cbc9c425f
 #pragma once
 
 #include <skybark/kernels/branch_tip.hpp>

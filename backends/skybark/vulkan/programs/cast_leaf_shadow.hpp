@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b134103a3225c5b88931914014f63fdfd840781169545f09e0120bf1ab4b47d8
+// sha256 795d4b0ee19bfe5af39bb2b8a6a690830ebdf47b795d2c9facd4e59f40862601
 #pragma once
 
 #include <skybark/kernels/cast_leaf_shadow.hpp>

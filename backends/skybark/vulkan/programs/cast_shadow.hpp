@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 4e49ccfaf7b1c0705a46652fa6c7956f356f8995080d3f31322b20f165673015
+// sha256 172c2e0fb798be5148087eec6faecf39e88354b1e9936967dd6b65f235fc9bff
 #pragma once
 
 #include <skybark/kernels/cast_shadow.hpp>

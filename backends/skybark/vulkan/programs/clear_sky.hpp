@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 fd292bc138f7a48c26792036363106a68d5ab105a53657163c1f861d48700d56
+// sha256 843676477585056fba565b93403db513fe39df944b3c7c974f2a5f733b0fa973
 #pragma once
 
 #include <skybark/kernels/clear_sky.hpp>

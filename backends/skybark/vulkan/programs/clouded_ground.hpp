@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1ea9dffe747cf23f9fd09c951b17393874fba8fc108efbd29dbfdf8b780bd936
+// sha256 b813b1b2e1136475300f20a2695683a2afc9c273e6c3fc67adb4b81be20c65a9
 #pragma once
 
 #include <skybark/kernels/clouded_ground.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 673a986464927373e73424706d45cb042f7accdfab272a00e9606827cf663d88
+// sha256 a84399770333577d3166d9a6a420e8cf29b5c37501b1ee8b355259ea608f98de
 #pragma once
 
 #include <skybark/kernels/detailed_branch.hpp>

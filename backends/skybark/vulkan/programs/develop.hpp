@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 54a77b5861482151db72d789119c292de10ba67467f049fcb59f0de62902abd6
+// sha256 3282c7182db8992be83217ae6bdb47e330e41066cf00ca8c7ca6fa7fbc17a222
 #pragma once
 
 #include <skybark/kernels/develop.hpp>

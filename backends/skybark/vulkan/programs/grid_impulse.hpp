@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 12ccdb2e7181d0a8e7f4e2753a001be1790a8a3a4db31e9489f95cbadfcf7933
+// sha256 21897292ab99d1db36e4e0b348dfd587b8e7c314bbd3b8889eca875d658cd5f8
 #pragma once
 
 #include <skybark/kernels/grid_impulse.hpp>

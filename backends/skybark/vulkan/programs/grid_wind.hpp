@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5e5d16b0c65e7d935450fb042e45b25bfe91d0225f379c180426689fb9c977d7
+// sha256 f768eabdfafb8e5fb86d096d662d7821114c11e43fe37d201803c133ca5fe72a
 #pragma once
 
 #include <skybark/kernels/grid_wind.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c8f5b8de75e410e37b2fe37042469c0d6b179d1efa04ab9cddd908f0a42fa8a4
+// sha256 abcbdfa959401bd2d8f949cbfe24616722cec395c4f831ed6c491a3583c711e2
 #pragma once
 
 #include <skybark/kernels/harris_order.hpp>

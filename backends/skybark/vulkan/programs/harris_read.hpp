@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 bdf58c3fcbbec0d0c08cc67d3b5cf06c31be68a3fcbfca9cd1f5d2c904c1b06d
+// sha256 9aa1faf43a9679c4dec4d9a1bc5d613cc8f255ed8efd1f06cb684d416e6d3d20
 #pragma once
 
 #include <skybark/kernels/harris_read.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 69d2214de1249ce11ed4d3668ab502c22520285d0ba9528184524dd0eb7e7235
+// sha256 400234db305f5dcd7743b1b5c95150054b27388851d4d2197a7fe4d0f143e7da
 #pragma once
 
 #include <skybark/kernels/harris_splat.hpp>

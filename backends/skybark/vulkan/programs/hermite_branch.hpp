@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f337f0bf35f9953e3dfb82e4b17380005204fc72799a794e5d913388b1d4f2a2
+// sha256 77606c2c3f3c74f1bfb95753709ff68cab6fe3b0065df4a2de91248f514fc61e
 #pragma once
 
 #include <skybark/kernels/hermite_branch.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 65d34a6eaccb4c496c9d831d7a29cde65d45cce57604a882650a93b9f6523dfd
+// sha256 28f3d5f4e7ba740cbcaaa55ab24fbff02b1fa962f905f73c54419b5551c90b95
 #pragma once
 
 #include <skybark/kernels/leaf_blade.hpp>

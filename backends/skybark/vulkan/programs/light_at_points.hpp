@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d3411c02f093b17cacd819c575cd5dd49abf66caad79ae83227e1ac41e096057
+// sha256 d0546f674c62514c4df0cecc197f8f4a991dc6ae56c3f5db86692dd1d6e59510
 #pragma once
 
 #include <skybark/kernels/light_at_points.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 6b14c5c7e0b775adc0d3d3604983717650ff86de295e2a190c7b1e85609b11bf
+// sha256 bd6def712e2a21f19a437c0ce299638f35cf83abc02f59e554e65b00d7600f23
 #pragma once
 
 #include <skybark/kernels/lit_bark.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 29a144af8f7e8f7cf19ecc6f5dc2e10411155c9d6b18af47d944eab3bdfb2f92
+// sha256 7ad57aca07f8a47d501717afddfdb381a62498fb068b85a00707f04cb8d09837
 #pragma once
 
 #include <skybark/kernels/lit_branch.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d7d5c9ab7bee2af83e408ea86997155f0760d40b6c2c7e530158cbe76436e9b7
+// sha256 68ce912bac7873197f750d93a672e774ab632dc20ffac500805d03b243f109b0
 #pragma once
 
 #include <skybark/kernels/lit_grid.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 edb398b7805f6558211f0b8d9bf9ad26f5b62a8da2c0b58a2a47fcd8b90115b9
+// sha256 e6d17db7178353d664321ed58ad41f92559f06d42ae24b60ffce301318d9c56c
 #pragma once
 
 #include <skybark/kernels/lit_leaf.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 881aee9980e7cdce824698e0c5ef42afefef5d71f2a004057297af212b9d6d75
+// sha256 6b5cffd5d90ed9120771b6d6f0cf6ed43e85a9f0bdee5044af00cc573312620f
 #pragma once
 
 #include <skybark/kernels/lit_puff.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f97bbb3ceaeae2beec0137d9c1b57452444d764a794aea9eb37a2fb7268cbddd
+// sha256 9fbaec05ec164de2d420406ecbff853b158b46a342f909eaf613808152e147b0
 #pragma once
 
 #include <skybark/kernels/meadow_ground.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b7e19b7ef0b4465425f9c68d98a5ffd50b1554d188d9361c575bef91d553e6cc
+// sha256 d1c806d17e01e6933bdf890747bf918361af61d4164627a2020bb024c3292029
 #pragma once
 
 #include <skybark/kernels/merge_chains.hpp>

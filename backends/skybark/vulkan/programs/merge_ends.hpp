@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 22eee8e247a6dfedc2fa1cb89a1c1a52ed15c1068b699f189200730aa673959d
+// sha256 4a61f11a2957ff1d7fa9c42bd54169d933283ba1524d377ce1e1c02d3db00860
 #pragma once
 
 #include <skybark/kernels/merge_ends.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 39ddb54a649918440641565cae2f35ef60cc1826b0d8f67dc4c9528e1444414d
+// sha256 3ad5109501a2ce5f73cff6514aa7798142a931a15cad6592ec8ee727881d7ef3
 #pragma once
 
 #include <skybark/kernels/particle_impulse.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0fed47d6170cc50482a4d9a184cc54eed8d9da6a341e0b5a6d04d7010020c614
+// sha256 c46d9e3e2508953d38971878d212e17144b7f8c36af16a9a06e40ffa31fc03ad
 #pragma once
 
 #include <skybark/kernels/pose_ends.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 e1ea65b4ec937eb5d7eea6a073232663173b4d963465b01fef1810abcfd4d927
+// sha256 a8e53029d737d997f11ae66eb33769cbbdedbfd7320b16ad277b8b2127c249ba
 #pragma once
 
 #include <skybark/kernels/scatter_medium.hpp>

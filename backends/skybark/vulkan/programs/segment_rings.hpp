@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ac123f010f7ea7252aa89ce8793df76710de0832a28c0c2bc8e506a6964407d8
+// sha256 dfe597e65d8107357a14617797bfbb1d36bd08a295ec25135caf99ff341bc769
 #pragma once
 
 #include <skybark/kernels/segment_rings.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d0c784e4f1b4c14ab85b530ea24f939196d50c7a30a9de22afd4a0fb508c9e82
+// sha256 0133988fc6c99aefb2bc3873aebc57bd7016fc037863a140917f60a8b21ff841
 #pragma once
 
 #include <skybark/kernels/shadow_polygon.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 35170266fcb9f7c9bcfeca1d616cff6d152bb4273c4cf3e3d8936bb378d7ec68
+// sha256 b665a368d86621a20fc8c21f376a9d74c713969683ae5cab2f7d45b6b3e2afd9
 #pragma once
 
 #include <skybark/kernels/shadow_slab.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 9940a78a67bbea17f0719ac87e65588a82773115edcf0353cb2e06a6f7f4283a
+// sha256 f27f5de91dbcf6f93b28face0dca0a87f4301268e0c7c66a17142eb273318ba3
 #pragma once
 
 #include <skybark/kernels/sway_bends.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f0e6b948447d9aec8a122829477e22f0a295f3c8f81297acd60ac97913ff8741
+// sha256 8a327a3d885f025e9029c4b18c8580f4cedc0b8f21550fbc1abcbfaee57458a4
 #pragma once
 
 #include <skybark/kernels/sway_energies.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c82fd9fe1fa4999c32d0b9544eaef7e75cdba27045b9af04a9cef0b44d19298c
+// sha256 07c1bc20ab87abaee02c42d1508f544ae8daecf76907bf08324126d2d26a66c9
 #pragma once
 
 #include <skybark/kernels/sway_forces.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c5b3b0144d648c84a3e497031a27a811406637c182a5685664a6c7ab51195fc0
+// sha256 6d00981eb4fd39f8545bd30f6d59c0352f239e1f9429ff917e2d4f8f4bde29e2
 #pragma once
 
 #include <skybark/kernels/sway_inertia.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0d2d0066afe52a32335167c88c09961f99145caa0c5b3bca874751012e039063
+// sha256 118f10fce4d2636587a865b2ec66154cc9c908ebcf95338294d8c60761a25246
 #pragma once
 
 #include <skybark/kernels/sway_moments.hpp>

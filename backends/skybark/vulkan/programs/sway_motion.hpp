@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0d3ed1184415c1d23486de7387315fc789587bfe0b331e2f1017e4f839dc8ebd
+// sha256 d93658d90c5c3a922c43ad58bf426c2ce5e7205ac58e161b41a37ae6a0753576
 #pragma once
 
 #include <skybark/kernels/sway_motion.hpp>

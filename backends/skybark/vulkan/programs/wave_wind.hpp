@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1f341c68707aa3df6acda23215e096956c3eda782e223e4b5de60ebabc3e923c
+// sha256 81aafbe2b265469a472d16e122ba65654765517f61786f4f66f3439a44cd91de
 #pragma once
 
 #include <skybark/kernels/wave_wind.hpp>

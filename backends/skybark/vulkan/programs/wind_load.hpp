@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 3bdd6eac1e109b404c78c2d447d23f6e255e9dc1b6ef4c0a4bfc1e38ca7d925b
+// sha256 9031c7248e2c365ba978ac80f15dbef89c5a9ed4a3edb264f82fc80e9058b93c
 #pragma once
 
 #include <skybark/kernels/wind_load.hpp>
