@@ -83,6 +83,45 @@ TEST(sort, takes_the_first_pairs_of_a_length_of_the_devices) {
     }
 }
 
+TEST(sort, takes_keys_of_few_bits) {
+    support::random_source random(24);
+    device d = with_threads(3);
+    const auto length = expect_value(make_buffer<device, count_record>(d, {{{50'000, 0, {}}}}));
+    for (const std::uint32_t bits : {0u, 1u, 8u, 9u, 22u, 31u, 32u, 40u}) {
+        for (const bool counts : {false, true}) {
+            words keys(60'000);
+            for (std::uint32_t& key : keys) {
+                key = static_cast<std::uint32_t>(random.bits() & ((std::uint64_t{1} << bits) - 1));
+            }
+            words values(keys.size());
+            std::iota(values.begin(), values.end(), 0u);
+            words order = values;
+            std::stable_sort(order.begin(), counts ? order.begin() + 50'000 : order.end(),
+                             [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
+            const auto k = put(d, keys);
+            const auto v = put(d, values);
+            ASSERT_TRUE(run(d, [&](auto& r) {
+                if (counts) {
+                    r.sort(view<device>(k), view<device>(v),
+                           counted<device>{view<device>(length), 0xffffffff}, bits);
+                } else {
+                    r.sort(view<device>(k), view<device>(v), bits);
+                }
+            }));
+            EXPECT_TRUE(words_of(v) == order) << bits << ' ' << counts;
+        }
+    }
+}
+
+TEST(sort, leaves_out_the_bits_that_keys_do_not_have) {
+    device d = with_threads(1);
+    const auto k = put(d, {0x100, 0x003, 0x001});
+    const auto v = put(d, {0, 1, 2});
+    ASSERT_TRUE(run(d, [&](auto& r) { r.sort(view<device>(k), view<device>(v), 8); }));
+    // The key that breaks the promise counts as zero.
+    EXPECT_EQ(words_of(v), (words{0, 2, 1}));
+}
+
 TEST(scan_of_words, leaves_each_words_own_value_out) {
     support::random_source random(23);
     for (const std::uint32_t threads : {1u, 3u}) {

@@ -402,13 +402,14 @@ class recorder {
         std::memcpy(total.buffer->data() + total.offset, &sum, sizeof sum);
     }
 
-    void sort(const buffer_view<device>& keys, const buffer_view<device>& values) {
-        sort_first(keys, values, std::numeric_limits<std::uint32_t>::max());
+    void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+              std::uint32_t key_bits = 32) {
+        sort_first(keys, values, std::numeric_limits<std::uint32_t>::max(), key_bits);
     }
 
     void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
-              const counted<device>& pairs) {
-        sort_first(keys, values, length_of(pairs));
+              const counted<device>& pairs, std::uint32_t key_bits = 32) {
+        sort_first(keys, values, length_of(pairs), key_bits);
     }
 
   private:
@@ -426,11 +427,12 @@ class recorder {
     }
 
     void sort_first(const buffer_view<device>& keys, const buffer_view<device>& values,
-                    std::uint64_t most) {
+                    std::uint64_t most, std::uint32_t key_bits) {
         const auto k = words_of(keys);
         const auto v = words_of(values);
         const std::size_t count = std::min<std::uint64_t>({k.size(), v.size(), most});
-        if (going() && !sort_pairs(*device_, device_->sort_, k.first(count), v.first(count))) {
+        if (going() &&
+            !sort_pairs(*device_, device_->sort_, k.first(count), v.first(count), key_bits)) {
             out_of_memory("sort");
         }
     }

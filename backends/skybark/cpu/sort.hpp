@@ -91,10 +91,10 @@ template <class Device>
 } // namespace radix
 
 /// Sorts pairs by growing key, from the lowest digit to the highest, which keeps the order of equal
-/// keys. At most 2^32 − 1 pairs. False where there is no memory.
+/// keys. At most 2^32 − 1 pairs, of keys below 2^key_bits. False where there is no memory.
 template <class Device>
 [[nodiscard]] bool sort_pairs(Device& device, sort_scratch& scratch, std::span<std::uint32_t> keys,
-                              std::span<std::uint32_t> values) {
+                              std::span<std::uint32_t> values, std::uint32_t key_bits = 32) {
     const radix::cut c(keys.size());
     auto* const spare = scratch.pairs.room_for<std::uint32_t>(2 * c.count);
     auto* const counts = scratch.counts.room_for<std::uint32_t>(radix::digits * radix::most_pieces);
@@ -103,7 +103,7 @@ template <class Device>
     }
     radix::pairs from{keys.data(), values.data()};
     radix::pairs to{spare, spare + c.count};
-    for (std::uint32_t shift = 0; shift < 32; shift += radix::bits) {
+    for (std::uint32_t shift = 0; shift < std::min(key_bits, 32u); shift += radix::bits) {
         if (c.count > 1 && radix::pass(device, c, shift, from, to, counts)) {
             std::swap(from, to);
         }
