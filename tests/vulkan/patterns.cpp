@@ -200,6 +200,47 @@ TEST_P(patterns, scan_stops_at_the_largest_number) {
     EXPECT_EQ(download<std::uint32_t>(gpu(), total, 1)[0], ~0u);
 }
 
+// ---- sort
+
+static_assert(sorts<device>);
+
+/// Pairs sorted by fewer bits, against a stable sort; whatever the number of passes.
+TEST_P(patterns, sort_takes_only_the_bits_that_keys_have) {
+    noise random;
+    for (const std::uint32_t bits : {0u, 1u, 4u, 5u, 8u, 11u, 17u, 20u, 32u}) {
+        const std::uint32_t n = 2500;
+        std::vector<std::uint32_t> keys(n);
+        std::vector<std::uint32_t> order(n);
+        for (std::uint32_t i = 0; i < n; ++i) {
+            keys[i] = bits == 0 ? 0 : random() >> (32 - bits);
+            order[i] = i;
+        }
+        for (const std::uint32_t length : {n, 1500u}) {
+            const auto in = upload(gpu(), keys);
+            const auto values = upload(gpu(), order);
+            const auto count = upload(gpu(), std::vector<count_record>{{length, length, {}}});
+            go(gpu(), [&](auto& rec) {
+                const auto k = view<device>(in);
+                const auto v = view<device>(values);
+                if (length == n) {
+                    rec.sort(k, v, bits);
+                } else {
+                    rec.sort(k, v, counted<device>{view<device>(count), n}, bits);
+                }
+            });
+            auto expected = order;
+            std::stable_sort(expected.begin(), expected.begin() + length,
+                             [&](auto a, auto b) { return keys[a] < keys[b]; });
+            std::vector<std::uint32_t> expected_keys(n);
+            for (std::uint32_t i = 0; i < n; ++i) {
+                expected_keys[i] = keys[expected[i]];
+            }
+            EXPECT_EQ(download<std::uint32_t>(gpu(), values, n), expected) << bits << " " << length;
+            EXPECT_EQ(download<std::uint32_t>(gpu(), in, n), expected_keys) << bits;
+        }
+    }
+}
+
 // ---- expand into a list
 
 /// Elements with random numbers of triangles, and their list by a plain loop.

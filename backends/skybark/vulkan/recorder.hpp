@@ -268,11 +268,19 @@ class recorder : private detail::stream {
     }
 
     void sort(const buffer_view<device>& keys, const buffer_view<device>& values) {
-        sort_pairs(bound(keys), bound(values), {}, ~0u);
+        sort(keys, values, 32);
     }
     void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
               const counted<device>& pairs) {
-        sort_pairs(bound(keys), bound(values), bound(pairs.count), pairs.limit);
+        sort(keys, values, pairs, 32);
+    }
+    void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+              std::uint32_t key_bits) {
+        sort_pairs({bound(keys), bound(values)}, {}, ~0u, key_bits);
+    }
+    void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+              const counted<device>& pairs, std::uint32_t key_bits) {
+        sort_pairs({bound(keys), bound(values)}, bound(pairs.count), pairs.limit, key_bits);
     }
 
   private:
@@ -490,26 +498,32 @@ class recorder : private detail::stream {
 
     // ---- sort
 
-    /// See sort.glsl. An even number of passes, so that the pairs end where they were.
-    void sort_pairs(const slice& keys, const slice& values, const slice& length,
-                    std::uint32_t limit) {
+    /// See sort.glsl. Passes go to and fro; where their number is odd, they begin at a copy, so
+    /// that the pairs end where they were.
+    void sort_pairs(detail::pair_slices from, const slice& length, std::uint32_t limit,
+                    std::uint32_t key_bits) {
         constexpr std::uint32_t block = 1024;
         constexpr std::uint32_t bits = 4;
         const auto count = static_cast<std::uint32_t>(
-            std::min<std::uint64_t>({keys.size / 4, values.size / 4, limit}));
-        if (count == 0) {
+            std::min<std::uint64_t>({from.keys.size / 4, from.values.size / 4, limit}));
+        const std::uint32_t passes = (std::min(key_bits, 32u) + bits - 1) / bits;
+        if (count == 0 || passes == 0) {
             return;
         }
         const std::uint32_t blocks = groups_of(count, block);
         const slice counts = scratch(std::uint64_t{blocks} << (bits + 2));
         const slice total = scratch(4);
-        detail::pair_slices from{keys, values};
         detail::pair_slices to{scratch(std::uint64_t{count} * 4),
                                scratch(std::uint64_t{count} * 4)};
         const std::uint32_t flags = length.buffer != VK_NULL_HANDLE ? detail::flag_counted : 0;
         detail::compute_call pass{sort_count_comp, "skybark: sort, counts", {}, {}, {}};
         pass.buffers[length_binding] = length;
-        for (std::uint32_t shift = 0; shift < 32; shift += bits) {
+        if (passes % 2 == 1) {
+            copy_slice(from.keys, to.keys);
+            copy_slice(from.values, to.values);
+            std::swap(from, to);
+        }
+        for (std::uint32_t shift = 0; shift < passes * bits; shift += bits) {
             pass.push.set_header({shift, count, blocks, flags});
             count_digits(pass, from.keys, counts, blocks);
             scan_words(counts, blocks << bits, total);
