@@ -598,10 +598,12 @@ class recorder {
         records<std::uint32_t>(total)[0] = static_cast<std::uint32_t>(sum);
     }
 
-    void sort(const view& keys, const view& values) {
+    /// Sorting by all 32 bits is right however few of them differ.
+    void sort(const view& keys, const view& values, std::uint32_t = 32) {
         sort_first(keys, values, std::min(keys.size, values.size) / 4);
     }
-    void sort(const view& keys, const view& values, const skybark::counted<device>& pairs) {
+    void sort(const view& keys, const view& values, const skybark::counted<device>& pairs,
+              std::uint32_t = 32) {
         sort_first(keys, values, length_of(pairs));
     }
 

@@ -124,7 +124,9 @@ struct sorter : least {
         using view = skybark::buffer_view<sorter>;
         void scan(const view&, const view&) {}
         void sort(const view&, const view&) {}
+        void sort(const view&, const view&, std::uint32_t) {}
         void sort(const view&, const view&, const skybark::counted<sorter>&) {}
+        void sort(const view&, const view&, const skybark::counted<sorter>&, std::uint32_t) {}
     };
     using least::least;
     [[nodiscard]] skybark::result<recorder> begin() { return recorder(0); }

@@ -64,6 +64,7 @@ enum class fault {
     sorts_24_bits,
     sorts_downwards,
     sorts_all,
+    ignores_top_key_bit,
     samples_nearest,
     samples_a_half_off,
     repeats_samples,
@@ -445,15 +446,17 @@ class mutant_recorder {
         }
     }
 
-    void sort(const view& keys, const view& values) {
-        sort_first(keys, values, std::min(keys.size, values.size) / 4);
+    void sort(const view& keys, const view& values, std::uint32_t key_bits = 32) {
+        sort_first(keys, values, std::min(keys.size, values.size) / 4, key_bits);
     }
-    void sort(const view& keys, const view& values, const counted<mutant>& pairs) {
+    void sort(const view& keys, const view& values, const counted<mutant>& pairs,
+              std::uint32_t key_bits = 32) {
         count_record length;
         std::memcpy(&length, pairs.count.buffer->data() + pairs.count.offset, sizeof length);
         sort_first(keys, values,
                    which_ == fault::sorts_all ? std::min(keys.size, values.size) / 4
-                                              : std::min(length.written, convert(pairs).limit));
+                                              : std::min(length.written, convert(pairs).limit),
+                   key_bits);
     }
 
     template <grid_map_kernel K>
@@ -557,7 +560,8 @@ class mutant_recorder {
         }
     }
 
-    void sort_first(const view& keys, const view& values, std::uint64_t count) const {
+    void sort_first(const view& keys, const view& values, std::uint64_t count,
+                    std::uint32_t key_bits) const {
         auto* const key = reinterpret_cast<std::uint32_t*>(keys.buffer->data() + keys.offset);
         auto* const value = reinterpret_cast<std::uint32_t*>(values.buffer->data() + values.offset);
         std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -568,18 +572,19 @@ class mutant_recorder {
             std::reverse(pairs.begin(), pairs.end());
         }
         std::stable_sort(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) {
-            return sorted_by(a.first) < sorted_by(b.first);
+            return sorted_by(a.first, key_bits) < sorted_by(b.first, key_bits);
         });
         for (std::uint64_t i = 0; i < count; ++i) {
             key[i] = pairs[i].first;
             value[i] = pairs[i].second;
         }
     }
-    [[nodiscard]] std::uint32_t sorted_by(std::uint32_t key) const {
-        return which_ == fault::sorts_signed      ? key ^ 0x80000000u
-               : which_ == fault::sorts_24_bits   ? key & 0x00ffffffu
-               : which_ == fault::sorts_downwards ? ~key
-                                                  : key;
+    [[nodiscard]] std::uint32_t sorted_by(std::uint32_t key, std::uint32_t key_bits) const {
+        return which_ == fault::sorts_signed          ? key ^ 0x80000000u
+               : which_ == fault::sorts_24_bits       ? key & 0x00ffffffu
+               : which_ == fault::sorts_downwards     ? ~key
+               : which_ == fault::ignores_top_key_bit ? key & ~(1u << (key_bits - 1))
+                                                      : key;
     }
 
     [[nodiscard]] range convert(range elements) const {
@@ -823,6 +828,10 @@ const mutation all_mutations[] = {
     {fault::sorts_24_bits, "sorts_24_bits", {"sort.limit", "sort.bits"}},
     {fault::sorts_downwards, "sorts_downwards", {"sort.limit", "sort.bits"}},
     {fault::sorts_all, "sorts_all", {"sort.counted", "sort.counted_empty"}},
+    {fault::ignores_top_key_bit,
+     "ignores_top_key_bit",
+     {"sort.bits", "sort.key_bits_1", "sort.key_bits_19", "sort.key_bits_31", "sort.key_bits_32",
+      "sort.key_bits_counted"}},
     {fault::samples_nearest,
      "samples_nearest",
      {"map.grids_thousand", "map.grids_anywhere_float16", "voxels.samples_between",

@@ -384,10 +384,11 @@ class null_recorder {
         note_view(total);
     }
 
-    void sort(const view& keys, const view& values) {
+    void sort(const view& keys, const view& values, std::uint32_t = 32) {
         note_sort(keys, values, std::min(keys.size, values.size) / 4);
     }
-    void sort(const view& keys, const view& values, const counted<null_device>& pairs) {
+    void sort(const view& keys, const view& values, const counted<null_device>& pairs,
+              std::uint32_t = 32) {
         note_sort(keys, values, pairs.limit);
     }
 

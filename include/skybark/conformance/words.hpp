@@ -252,6 +252,57 @@ void sort_counted(context<B>& c, std::uint32_t written, std::uint32_t limit) {
     expect_sorted(c, p, std::min(written, limit));
 }
 
+/// Keys below 2^bits, a few of them twice, of which the largest one may be.
+template <sorts B>
+[[nodiscard]] std::vector<std::uint32_t> short_keys(context<B>& c, std::size_t count,
+                                                    std::uint32_t bits) {
+    auto keys = random_words(c, count, std::uint64_t{1} << bits);
+    const auto most = static_cast<std::uint32_t>((std::uint64_t{1} << bits) - 1);
+    for (std::size_t i = 0; i < keys.size(); i += 37) {
+        keys[i] = i % 2 == 0 ? most : most / 2;
+    }
+    return keys;
+}
+
+/// A caller who knows how many bits the keys have gets the same order.
+template <sorts B>
+void sort_key_bits(context<B>& c, std::uint32_t bits) {
+    for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{2},
+                                    std::size_t{257}, std::size_t{5000}, std::size_t{70001}}) {
+        const auto p = put_pairs(c, short_keys(c, count, bits));
+        c.run([&](auto& r) { r.sort(p.keys_in.view(), p.values_in.view(), bits); });
+        expect_sorted(c, p, count);
+    }
+}
+template <sorts B>
+void sort_key_bits_counted(context<B>& c) {
+    for (const std::uint32_t bits : {1u, 5u, 8u, 13u, 24u, 31u, 32u}) {
+        const auto p = put_pairs(c, short_keys(c, 5000, bits));
+        const auto count = c.put_count(3210);
+        c.run([&](auto& r) {
+            r.sort(p.keys_in.view(), p.values_in.view(), counted<B>{count.view(), 5000}, bits);
+        });
+        expect_sorted(c, p, 3210);
+    }
+}
+/// Sorts by different numbers of bits in one stream: each as if it were alone.
+template <sorts B>
+void sort_key_bits_in_turn(context<B>& c) {
+    std::vector<pair_probe<B>> probes;
+    constexpr std::array<std::uint32_t, 5> bits{3, 32, 9, 17, 1};
+    for (const std::uint32_t b : bits) {
+        probes.push_back(put_pairs(c, short_keys(c, 3000 + 500 * b, b)));
+    }
+    c.run([&](auto& r) {
+        for (std::size_t i = 0; i < bits.size(); ++i) {
+            r.sort(probes[i].keys_in.view(), probes[i].values_in.view(), bits[i]);
+        }
+    });
+    for (const pair_probe<B>& p : probes) {
+        expect_sorted(c, p, p.keys.size());
+    }
+}
+
 /// The pairs of a part of both buffers; those around it stay.
 template <sorts B>
 void sort_views(context<B>& c) {
@@ -337,6 +388,12 @@ void add_sort_cases(cases<B>& to) {
         add("counted_limit_0", [](context<B>& c) { sort_counted(c, 4999, 0); });
         add("in_views", sort_views<B>);
         add("twice", sort_twice<B>);
+        for (const std::uint32_t bits : {1u, 4u, 7u, 8u, 19u, 31u, 32u}) {
+            add("key_bits_" + std::to_string(bits),
+                [bits](context<B>& c) { sort_key_bits(c, bits); });
+        }
+        add("key_bits_counted", sort_key_bits_counted<B>);
+        add("key_bits_in_turn", sort_key_bits_in_turn<B>);
     }
 }
 

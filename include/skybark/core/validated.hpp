@@ -535,17 +535,17 @@ class validated<B>::recorder {
         }
     }
 
-    void sort(const view& keys, const view& values) requires sorts<B> {
+    void sort(const view& keys, const view& values, std::uint32_t key_bits = 32) requires sorts<B> {
         check c(*this, "sort");
-        check_pairs(c, keys, values);
+        check_pairs(c, keys, values, key_bits);
         if (c.passed()) {
-            inner_.sort(convert(keys), convert(values));
+            inner_.sort(convert(keys), convert(values), key_bits);
         }
     }
-    void sort(const view& keys, const view& values,
-              const counted<validated>& pairs) requires sorts<B> {
+    void sort(const view& keys, const view& values, const counted<validated>& pairs,
+              std::uint32_t key_bits = 32) requires sorts<B> {
         check c(*this, "sort of a count");
-        check_pairs(c, keys, values);
+        check_pairs(c, keys, values, key_bits);
         c.length(pairs);
         c.that(pairs.limit <= keys.size / 4, "the count may reach " + detail::digits(pairs.limit) +
                                                  ", and there are " +
@@ -553,7 +553,7 @@ class validated<B>::recorder {
         c.apart(keys, "the keys", pairs.count, "the count");
         c.apart(values, "the values", pairs.count, "the count");
         if (c.passed()) {
-            inner_.sort(convert(keys), convert(values), convert(pairs));
+            inner_.sort(convert(keys), convert(values), convert(pairs), key_bits);
         }
     }
 
@@ -807,7 +807,8 @@ class validated<B>::recorder {
     [[nodiscard]] static range words_in(const view& v) {
         return {0, static_cast<std::uint32_t>(std::min<std::uint64_t>(v.size / 4, 0xffffffff))};
     }
-    static void check_pairs(check& c, const view& keys, const view& values) {
+    static void check_pairs(check& c, const view& keys, const view& values,
+                            std::uint32_t key_bits) {
         c.view(keys, "the view of the keys");
         c.view(values, "the view of the values");
         c.that(keys.size == values.size, "there are " + detail::digits(keys.size / 4) +
@@ -815,6 +816,8 @@ class validated<B>::recorder {
                                              " values.");
         c.apart(keys, "the keys", values, "the values");
         c.elements(words_in(keys));
+        c.that(key_bits >= 1 && key_bits <= 32,
+               "keys of " + detail::digits(key_bits) + " bits are asked for; a key has 1 to 32.");
     }
     static void check_target(check& c, const draw_target<validated>& target) {
         c.that(target.color != nullptr || target.depth != nullptr,
