@@ -96,6 +96,31 @@ float distance_along(bundle_meeting met, float side, float z, float lift)
     return counts ? max(distance, 0.0f) : -1.0f;
 }
 
+// ---- Layers of depth: z from −reach to reach becomes a depth within 0 and 1
+
+float depth_of_layer(float z, float reach)
+{
+    precise float depth = 0.5f + 0.49f * (z / reach);
+    return depth;
+}
+
+float place_of_layer(float depth, float reach)
+{
+    precise float z = (depth - 0.5f) * (reach / 0.49f);
+    return z;
+}
+
+// How far, along the bundle, a plane of this normal rises over `apart` to each side.
+float rise_in_pixel(ray_bundle bundle, vec3 normal, float apart)
+{
+    float right = abs((normal.x * bundle.right.x + normal.y * bundle.right.y) +
+                      normal.z * bundle.right.z);
+    float up = abs((normal.x * bundle.up.x + normal.y * bundle.up.y) + normal.z * bundle.up.z);
+    float along = abs((normal.x * bundle.direction.x + normal.y * bundle.direction.y) +
+                      normal.z * bundle.direction.z);
+    return apart * (right + up) / max(along, 0.001f);
+}
+
 // ---- The grids: the finest has `cells` on a side, each next one half of it, the last has one cell.
 // A triangle is in the cell of its middle, in the finest grid of which two cells are as wide as it
 // is. So a ray meets only triangles of its own cell and of the eight around it, of each grid.

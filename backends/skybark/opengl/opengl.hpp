@@ -14,6 +14,7 @@
 #include <skybark/opengl/programs/branch_detail.hpp>
 #include <skybark/opengl/programs/branch_join.hpp>
 #include <skybark/opengl/programs/branch_tip.hpp>
+#include <skybark/opengl/programs/bundle_corner.hpp>
 #include <skybark/opengl/programs/bundle_count.hpp>
 #include <skybark/opengl/programs/bundle_crowds.hpp>
 #include <skybark/opengl/programs/bundle_hits.hpp>
@@ -26,12 +27,17 @@
 #include <skybark/opengl/programs/clouded_ground.hpp>
 #include <skybark/opengl/programs/detailed_branch.hpp>
 #include <skybark/opengl/programs/develop.hpp>
+#include <skybark/opengl/programs/directional_light.hpp>
+#include <skybark/opengl/programs/gather_light.hpp>
+#include <skybark/opengl/programs/gather_sun.hpp>
+#include <skybark/opengl/programs/gathered_irradiance.hpp>
 #include <skybark/opengl/programs/grid_impulse.hpp>
 #include <skybark/opengl/programs/grid_wind.hpp>
 #include <skybark/opengl/programs/harris_order.hpp>
 #include <skybark/opengl/programs/harris_read.hpp>
 #include <skybark/opengl/programs/harris_splat.hpp>
 #include <skybark/opengl/programs/hermite_branch.hpp>
+#include <skybark/opengl/programs/layer_hits.hpp>
 #include <skybark/opengl/programs/leaf_blade.hpp>
 #include <skybark/opengl/programs/light_at_points.hpp>
 #include <skybark/opengl/programs/lit_bark.hpp>
@@ -43,6 +49,7 @@
 #include <skybark/opengl/programs/merge_chains.hpp>
 #include <skybark/opengl/programs/merge_ends.hpp>
 #include <skybark/opengl/programs/particle_impulse.hpp>
+#include <skybark/opengl/programs/patch_samples.hpp>
 #include <skybark/opengl/programs/pose_ends.hpp>
 #include <skybark/opengl/programs/probe_image.hpp>
 #include <skybark/opengl/programs/probe_level.hpp>
@@ -66,6 +73,8 @@
 #include <skybark/opengl/programs/segment_rings.hpp>
 #include <skybark/opengl/programs/shadow_polygon.hpp>
 #include <skybark/opengl/programs/shadow_slab.hpp>
+#include <skybark/opengl/programs/surface_light.hpp>
+#include <skybark/opengl/programs/surface_triangles.hpp>
 #include <skybark/opengl/programs/sway_bends.hpp>
 #include <skybark/opengl/programs/sway_energies.hpp>
 #include <skybark/opengl/programs/sway_forces.hpp>

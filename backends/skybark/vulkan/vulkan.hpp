@@ -10,6 +10,7 @@
 #include <skybark/vulkan/programs/branch_detail.hpp>
 #include <skybark/vulkan/programs/branch_join.hpp>
 #include <skybark/vulkan/programs/branch_tip.hpp>
+#include <skybark/vulkan/programs/bundle_corner.hpp>
 #include <skybark/vulkan/programs/bundle_count.hpp>
 #include <skybark/vulkan/programs/bundle_crowds.hpp>
 #include <skybark/vulkan/programs/bundle_hits.hpp>
@@ -22,12 +23,17 @@
 #include <skybark/vulkan/programs/clouded_ground.hpp>
 #include <skybark/vulkan/programs/detailed_branch.hpp>
 #include <skybark/vulkan/programs/develop.hpp>
+#include <skybark/vulkan/programs/directional_light.hpp>
+#include <skybark/vulkan/programs/gather_light.hpp>
+#include <skybark/vulkan/programs/gather_sun.hpp>
+#include <skybark/vulkan/programs/gathered_irradiance.hpp>
 #include <skybark/vulkan/programs/grid_impulse.hpp>
 #include <skybark/vulkan/programs/grid_wind.hpp>
 #include <skybark/vulkan/programs/harris_order.hpp>
 #include <skybark/vulkan/programs/harris_read.hpp>
 #include <skybark/vulkan/programs/harris_splat.hpp>
 #include <skybark/vulkan/programs/hermite_branch.hpp>
+#include <skybark/vulkan/programs/layer_hits.hpp>
 #include <skybark/vulkan/programs/leaf_blade.hpp>
 #include <skybark/vulkan/programs/light_at_points.hpp>
 #include <skybark/vulkan/programs/lit_bark.hpp>
@@ -39,6 +45,7 @@
 #include <skybark/vulkan/programs/merge_chains.hpp>
 #include <skybark/vulkan/programs/merge_ends.hpp>
 #include <skybark/vulkan/programs/particle_impulse.hpp>
+#include <skybark/vulkan/programs/patch_samples.hpp>
 #include <skybark/vulkan/programs/pose_ends.hpp>
 #include <skybark/vulkan/programs/probe_image.hpp>
 #include <skybark/vulkan/programs/probe_level.hpp>
@@ -62,6 +69,8 @@
 #include <skybark/vulkan/programs/segment_rings.hpp>
 #include <skybark/vulkan/programs/shadow_polygon.hpp>
 #include <skybark/vulkan/programs/shadow_slab.hpp>
+#include <skybark/vulkan/programs/surface_light.hpp>
+#include <skybark/vulkan/programs/surface_triangles.hpp>
 #include <skybark/vulkan/programs/sway_bends.hpp>
 #include <skybark/vulkan/programs/sway_energies.hpp>
 #include <skybark/vulkan/programs/sway_forces.hpp>

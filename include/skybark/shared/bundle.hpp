@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 df917ddb4bdc96e56c7f6761db0dd97424d224bb20fe727f3f51c98906389917
+// sha256 7f8754e850a58af7e9b3da3a3593c97aab3bd712a7dafe09edf78d3f788419f5
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -102,6 +102,31 @@ inline float distance_along(bundle_meeting met, float side, float z, float lift)
     float least = front ? -0.5f * lift : 0.5f * lift;
     bool counts = met.facing != 0.0f && distance > least;
     return counts ? max(distance, 0.0f) : -1.0f;
+}
+
+// ---- Layers of depth: z from −reach to reach becomes a depth within 0 and 1
+
+inline float depth_of_layer(float z, float reach)
+{
+    float depth = 0.5f + 0.49f * (z / reach);
+    return depth;
+}
+
+inline float place_of_layer(float depth, float reach)
+{
+    float z = (depth - 0.5f) * (reach / 0.49f);
+    return z;
+}
+
+// How far, along the bundle, a plane of this normal rises over `apart` to each side.
+inline float rise_in_pixel(ray_bundle bundle, vec3 normal, float apart)
+{
+    float right = abs((normal.x * bundle.right.x + normal.y * bundle.right.y) +
+                      normal.z * bundle.right.z);
+    float up = abs((normal.x * bundle.up.x + normal.y * bundle.up.y) + normal.z * bundle.up.z);
+    float along = abs((normal.x * bundle.direction.x + normal.y * bundle.direction.y) +
+                      normal.z * bundle.direction.z);
+    return apart * (right + up) / max(along, 0.001f);
 }
 
 // ---- The grids: the finest has `cells` on a side, each next one half of it, the last has one cell.

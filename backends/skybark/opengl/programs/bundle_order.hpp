@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 77ff4662a8a0531944c010f075526fb884305578569495e3f92719ad2e256f53
+// sha256 81ddf0b5c437f5f633e0ec34442441fba170ab777066737f793d6330ce971882
 #pragma once
 
 #include <skybark/kernels/bundle_order.hpp>
@@ -235,6 +235,25 @@ float distance_along(bundle_meeting met, float side, float z, float lift)
     float least = front ? -0.5f * lift : 0.5f * lift;
     bool counts = met.facing != 0.0f && distance > least;
     return counts ? max(distance, 0.0f) : -1.0f;
+}
+float depth_of_layer(float z, float reach)
+{
+    precise float depth = 0.5f + 0.49f * (z / reach);
+    return depth;
+}
+float place_of_layer(float depth, float reach)
+{
+    precise float z = (depth - 0.5f) * (reach / 0.49f);
+    return z;
+}
+float rise_in_pixel(ray_bundle bundle, vec3 normal, float apart)
+{
+    float right = abs((normal.x * bundle.right.x + normal.y * bundle.right.y) +
+                      normal.z * bundle.right.z);
+    float up = abs((normal.x * bundle.up.x + normal.y * bundle.up.y) + normal.z * bundle.up.z);
+    float along = abs((normal.x * bundle.direction.x + normal.y * bundle.direction.y) +
+                      normal.z * bundle.direction.z);
+    return apart * (right + up) / max(along, 0.001f);
 }
 uint bundle_levels(uint cells)
 {
@@ -578,6 +597,25 @@ float distance_along(bundle_meeting met, float side, float z, float lift)
     float least = front ? -0.5f * lift : 0.5f * lift;
     bool counts = met.facing != 0.0f && distance > least;
     return counts ? max(distance, 0.0f) : -1.0f;
+}
+float depth_of_layer(float z, float reach)
+{
+    precise float depth = 0.5f + 0.49f * (z / reach);
+    return depth;
+}
+float place_of_layer(float depth, float reach)
+{
+    precise float z = (depth - 0.5f) * (reach / 0.49f);
+    return z;
+}
+float rise_in_pixel(ray_bundle bundle, vec3 normal, float apart)
+{
+    float right = abs((normal.x * bundle.right.x + normal.y * bundle.right.y) +
+                      normal.z * bundle.right.z);
+    float up = abs((normal.x * bundle.up.x + normal.y * bundle.up.y) + normal.z * bundle.up.z);
+    float along = abs((normal.x * bundle.direction.x + normal.y * bundle.direction.y) +
+                      normal.z * bundle.direction.z);
+    return apart * (right + up) / max(along, 0.001f);
 }
 uint bundle_levels(uint cells)
 {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1ff21b81c6005da7279cbcfcf00ec18c412110c4f78ee78a4f93a6de58761eee
+// sha256 e0b6689484305591a291c837dd85db6eb52a503eaa6cfc82a33a644c7f82e0f2
 #pragma once
 
 #include <skybark/kernels/bundle_hits.hpp>

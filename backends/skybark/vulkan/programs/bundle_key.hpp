@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 fc6e63b3a2a5aebd774620777dc84c2f81e28829f7d220f75440846fa9abddae
+// sha256 c2b369454d7e24af5a1e43061cedb846ad72ccb82eb653088df954415dc27e4c
 #pragma once
 
 #include <skybark/kernels/bundle_key.hpp>

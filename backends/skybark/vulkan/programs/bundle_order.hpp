@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d68a2fa1e1602569d5f5a03d60c0c868ac50a5f5c1d7b9c5757404a99a363f0a
+// sha256 a98eb892956a84970c5e648266e682d7b364fe1650ef470504a6892d38215a14
 #pragma once
 
 #include <skybark/kernels/bundle_order.hpp>

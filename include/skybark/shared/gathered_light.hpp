@@ -1,0 +1,57 @@
+// clang-format off
+// Made by shaders/embed.py. Edit the text in shaders/ instead.
+// sha256 13835c768c73783723b7d9cff2389ea878ae82f25a249e2c2186d2b21f915755
+#pragma once
+
+#include <skybark/shared/glsl.hpp>
+
+namespace skybark::shared {
+
+// Sums of gathered light, and what they say (METHODS of the estimator: skybark/gather/final_gather.hpp).
+
+inline float luminance_of(vec4 light)
+{
+    return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
+}
+
+// The cosine of a direction with a normal, without its sign.
+inline float cosine_between(vec3 normal, vec4 direction)
+{
+    float along =
+        (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
+    return abs(along);
+}
+
+inline vec4 light_sum(vec4 sum, vec4 radiance, float weight)
+{
+    float r = sum.x + radiance.x * weight;
+    float g = sum.y + radiance.y * weight;
+    float b = sum.z + radiance.z * weight;
+    float w = sum.w + weight;
+    return vec4(r, g, b, w);
+}
+
+// A direction's radiance and its three moments along x, y and z, of one colour.
+inline vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
+{
+    float mean = sum.x + radiance;
+    float x = sum.y + radiance * (side * direction.x);
+    float y = sum.z + radiance * (side * direction.y);
+    float z = sum.w + radiance * (side * direction.z);
+    return vec4(mean, x, y, z);
+}
+
+// Radiance that leaves a diffuse surface: what it emits, and parts of what arrives on both sides.
+inline vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
+{
+    const float over_pi = 0.318309886f;
+    float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
+                                               material.transmission.x * behind.x);
+    float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
+                                               material.transmission.y * behind.y);
+    float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
+                                               material.transmission.z * behind.z);
+    return vec4(r, g, b, 0.0f);
+}
+
+} // namespace skybark::shared

@@ -1,0 +1,47 @@
+// Sums of gathered light, and what they say (METHODS of the estimator: skybark/gather/final_gather.hpp).
+#include "records.glsl"
+
+float luminance_of(vec4 light)
+{
+    return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
+}
+
+// The cosine of a direction with a normal, without its sign.
+float cosine_between(vec3 normal, vec4 direction)
+{
+    precise float along =
+        (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
+    return abs(along);
+}
+
+vec4 light_sum(vec4 sum, vec4 radiance, float weight)
+{
+    precise float r = sum.x + radiance.x * weight;
+    precise float g = sum.y + radiance.y * weight;
+    precise float b = sum.z + radiance.z * weight;
+    precise float w = sum.w + weight;
+    return vec4(r, g, b, w);
+}
+
+// A direction's radiance and its three moments along x, y and z, of one colour.
+vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
+{
+    precise float mean = sum.x + radiance;
+    precise float x = sum.y + radiance * (side * direction.x);
+    precise float y = sum.z + radiance * (side * direction.y);
+    precise float z = sum.w + radiance * (side * direction.z);
+    return vec4(mean, x, y, z);
+}
+
+// Radiance that leaves a diffuse surface: what it emits, and parts of what arrives on both sides.
+vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
+{
+    const float over_pi = 0.318309886f;
+    float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
+                                               material.transmission.x * behind.x);
+    float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
+                                               material.transmission.y * behind.y);
+    float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
+                                               material.transmission.z * behind.z);
+    return vec4(r, g, b, 0.0f);
+}
