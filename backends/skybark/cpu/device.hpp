@@ -7,6 +7,7 @@
 #include <skybark/cpu/jobs.hpp>
 #include <skybark/cpu/layers.hpp>
 #include <skybark/cpu/memory.hpp>
+#include <skybark/cpu/peel.hpp>
 #include <skybark/cpu/program.hpp>
 #include <skybark/cpu/raster.hpp>
 #include <skybark/cpu/sinks.hpp>
@@ -214,6 +215,7 @@ class device {
     raster_scratch raster_;
     layer_scratch layers_;
     sort_scratch sort_;
+    peel_scratch peel_;
     std::vector<std::uint64_t> counts_;
 };
 
@@ -316,6 +318,17 @@ class recorder {
         with_spans<K>(buffers, [&](auto... spans) {
             rasterise(*device_, device_->raster_, kernel, images, grids::of<device, K>(volumes),
                       geometry, target, state, spans...);
+        });
+    }
+
+    template <peel_kernel K>
+    void peel(const K& kernel, const bindings<device, K>& buffers, range triangles,
+              const peeled_layer<device>& layer) {
+        with_spans<K>(buffers, [&](auto... spans) {
+            if (going() &&
+                !peel_layer(*device_, device_->peel_, kernel, triangles, layer, spans...)) {
+                out_of_memory("peel");
+            }
         });
     }
 
