@@ -70,6 +70,7 @@
 #include <skybark/opengl/programs/scatter_relax.hpp>
 #include <skybark/opengl/programs/scatter_restrict.hpp>
 #include <skybark/opengl/programs/scatter_source.hpp>
+#include <skybark/opengl/programs/seen_surface.hpp>
 #include <skybark/opengl/programs/segment_rings.hpp>
 #include <skybark/opengl/programs/shadow_polygon.hpp>
 #include <skybark/opengl/programs/shadow_slab.hpp>

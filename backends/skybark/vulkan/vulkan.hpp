@@ -66,6 +66,7 @@
 #include <skybark/vulkan/programs/scatter_relax.hpp>
 #include <skybark/vulkan/programs/scatter_restrict.hpp>
 #include <skybark/vulkan/programs/scatter_source.hpp>
+#include <skybark/vulkan/programs/seen_surface.hpp>
 #include <skybark/vulkan/programs/segment_rings.hpp>
 #include <skybark/vulkan/programs/shadow_polygon.hpp>
 #include <skybark/vulkan/programs/shadow_slab.hpp>
