@@ -9,6 +9,8 @@
 // Nothing here is fast: each pattern is done when its call returns, one element after another.
 
 #include <skybark/core/backend.hpp>
+#include <skybark/shared/alpha_map.hpp>
+#include <skybark/shared/bundle.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -368,6 +370,48 @@ struct canvas {
     }
 };
 
+/// Calls `visit(x, y, weights)` for each pixel whose middle a triangle covers, whichever way it
+/// winds. A middle on an edge that two triangles share belongs to one of them.
+template <class Corner, class Visit>
+void cover(std::array<Corner, 3> c, std::uint32_t width, std::uint32_t height, Visit&& visit) {
+    const auto area = [](std::int64_t ax, std::int64_t ay, std::int64_t bx, std::int64_t by,
+                         std::int64_t px,
+                         std::int64_t py) { return (bx - ax) * (py - ay) - (by - ay) * (px - ax); };
+    const std::int64_t twice = area(c[0].x, c[0].y, c[1].x, c[1].y, c[2].x, c[2].y);
+    if (twice == 0) {
+        return;
+    }
+    const std::int64_t turn = twice < 0 ? -1 : 1;
+    const auto [left, right] = std::minmax({c[0].x, c[1].x, c[2].x});
+    const auto [top, bottom] = std::minmax({c[0].y, c[1].y, c[2].y});
+    const auto pixels = [](std::int64_t from, std::int64_t to_, std::uint32_t size) {
+        return std::pair{
+            static_cast<std::uint32_t>(std::clamp<std::int64_t>(from / 256 - 1, 0, size)),
+            static_cast<std::uint32_t>(std::clamp<std::int64_t>(to_ / 256 + 2, 0, size))};
+    };
+    const auto [x0, x1] = pixels(left, right, width);
+    const auto [y0, y1] = pixels(top, bottom, height);
+    for (std::uint32_t y = y0; y < y1; ++y) {
+        for (std::uint32_t x = x0; x < x1; ++x) {
+            std::array<double, 3> weight{};
+            bool inside = true;
+            for (std::size_t i = 0; i < 3 && inside; ++i) {
+                const Corner& a = c[(i + 1) % 3];
+                const Corner& b = c[(i + 2) % 3];
+                const std::int64_t e =
+                    turn * area(a.x, a.y, b.x, b.y, x * 256 + 128, y * 256 + 128);
+                const bool top_or_left =
+                    a.y == b.y ? (b.x > a.x) == (turn > 0) : (b.y < a.y) == (turn > 0);
+                inside = e > 0 || (e == 0 && top_or_left);
+                weight[i] = static_cast<double>(turn * e) / static_cast<double>(twice);
+            }
+            if (inside) {
+                visit(x, y, weight);
+            }
+        }
+    }
+}
+
 /// Fills one triangle whose corners lie in front of the camera. `shade(varyings, pixel, front)`
 /// gives the fragment.
 template <class Corner, class Shade>
@@ -377,67 +421,84 @@ void fill(const canvas& to, std::array<Corner, 3> c, Shade&& shade) {
         corner.x = std::llround((p.x * 0.5 + 0.5) * to.width * 256.0);
         corner.y = std::llround((0.5 - p.y * 0.5) * to.height * 256.0);
     }
-    const auto area = [](std::int64_t ax, std::int64_t ay, std::int64_t bx, std::int64_t by,
-                         std::int64_t px,
-                         std::int64_t py) { return (bx - ax) * (py - ay) - (by - ay) * (px - ax); };
-    std::int64_t twice = area(c[0].x, c[0].y, c[1].x, c[1].y, c[2].x, c[2].y);
-    const bool front = twice < 0; // y points down here
-    if (twice == 0 || (!front && to.state.cull == skybark::cull_mode::back)) {
+    // y points down here.
+    const bool front =
+        (c[1].x - c[0].x) * (c[2].y - c[0].y) < (c[1].y - c[0].y) * (c[2].x - c[0].x);
+    if (!front && to.state.cull == skybark::cull_mode::back) {
         return;
     }
-    if (front) {
-        std::swap(c[1], c[2]);
-        twice = -twice;
-    }
-    const auto [left, right] = std::minmax({c[0].x, c[1].x, c[2].x});
-    const auto [top, bottom] = std::minmax({c[0].y, c[1].y, c[2].y});
-    const auto pixels = [](std::int64_t from, std::int64_t to_, std::uint32_t size) {
-        return std::pair{
-            static_cast<std::uint32_t>(std::clamp<std::int64_t>(from / 256 - 1, 0, size)),
-            static_cast<std::uint32_t>(std::clamp<std::int64_t>(to_ / 256 + 2, 0, size))};
-    };
-    const auto [x0, x1] = pixels(left, right, to.width);
-    const auto [y0, y1] = pixels(top, bottom, to.height);
-    for (std::uint32_t y = y0; y < y1; ++y) {
-        for (std::uint32_t x = x0; x < x1; ++x) {
-            std::array<double, 3> weight{};
-            bool inside = true;
-            for (std::size_t i = 0; i < 3 && inside; ++i) {
-                const Corner& a = c[(i + 1) % 3];
-                const Corner& b = c[(i + 2) % 3];
-                const std::int64_t e = area(a.x, a.y, b.x, b.y, x * 256 + 128, y * 256 + 128);
-                const bool top_or_left = a.y == b.y ? b.x > a.x : b.y < a.y;
-                inside = e > 0 || (e == 0 && top_or_left);
-                weight[i] = static_cast<double>(e) / static_cast<double>(twice);
-            }
-            if (!inside) {
-                continue;
-            }
-            double z = 0;
-            double one_over_w = 0;
-            for (std::size_t i = 0; i < 3; ++i) {
-                z += weight[i] * c[i].position.z / c[i].position.w;
-                one_over_w += weight[i] / c[i].position.w;
-            }
-            if (!to.depth_passes(x, y, static_cast<float>(z))) {
-                continue;
-            }
-            decltype(c[0].varyings) varyings{};
-            for (std::size_t i = 0; i < 3; ++i) {
-                const auto share = static_cast<float>(weight[i] / c[i].position.w / one_over_w);
-                for (std::size_t v = 0; v < varyings.size(); ++v) {
-                    varyings[v] += c[i].varyings[v] * share;
-                }
-            }
-            const skybark::fragment_output out =
-                shade(varyings,
-                      glm::vec2{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}, front);
-            if (out.keep) {
-                to.write(x, y, static_cast<float>(z), out.color);
+    cover(c, to.width, to.height, [&](std::uint32_t x, std::uint32_t y, const auto& weight) {
+        double z = 0;
+        double one_over_w = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            z += weight[i] * c[i].position.z / c[i].position.w;
+            one_over_w += weight[i] / c[i].position.w;
+        }
+        if (!to.depth_passes(x, y, static_cast<float>(z))) {
+            return;
+        }
+        decltype(c[0].varyings) varyings{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto share = static_cast<float>(weight[i] / c[i].position.w / one_over_w);
+            for (std::size_t v = 0; v < varyings.size(); ++v) {
+                varyings[v] += c[i].varyings[v] * share;
             }
         }
-    }
+        const glm::vec2 pixel{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
+        const skybark::fragment_output out = shade(varyings, pixel, front);
+        if (out.keep) {
+            to.write(x, y, static_cast<float>(z), out.color);
+        }
+    });
 }
+
+/// What one sample meets of the triangles that it is shown.
+class bundle_ray {
+  public:
+    bundle_ray(const skybark::ray_bundle& bundle, const skybark::gather_sample& sample)
+        : bundle_(bundle), from_(skybark::shared::across_bundle(
+                               bundle, skybark::shared::ray_origin(bundle, sample))),
+          side_(skybark::shared::side_of_bundle(bundle, sample.normal)) {}
+
+    /// Growing numbers: the first of those that are as near stays.
+    void meet(std::uint32_t number, const skybark::gather_triangle& t,
+              std::span<const std::uint32_t> alpha) {
+        const skybark::shared::bundle_meeting met =
+            skybark::shared::meet_triangle(across(t.a), across(t.b), across(t.c), from_.x, from_.y,
+                                           skybark::shared::meeting_slack(bundle_));
+        const float distance =
+            skybark::shared::distance_along(met, side_, from_.z, bundle_.right.w);
+        if (distance >= 0 && distance < hit_.distance &&
+            !(t.alpha != 0 && is_hole(alpha, t.alpha - 1, met.u, met.v))) {
+            const std::uint32_t back = side_ * met.facing < 0 ? 0 : 1;
+            hit_ = {distance, 2 * number + back, met.u, met.v};
+        }
+    }
+    [[nodiscard]] const skybark::gather_hit& hit() const { return hit_; }
+
+  private:
+    [[nodiscard]] glm::vec3 across(glm::vec3 place) const {
+        return skybark::shared::across_bundle(bundle_, place);
+    }
+    [[nodiscard]] static bool is_hole(std::span<const std::uint32_t> words, std::size_t number,
+                                      float u, float v) {
+        skybark::alpha_coordinates at;
+        std::memcpy(static_cast<void*>(&at), words.data() + number * sizeof at / 4, sizeof at);
+        const std::uint32_t width = at.size & 0xffff;
+        const std::uint32_t x = skybark::shared::alpha_texel(
+            skybark::shared::alpha_place(at.a.x, at.b.x, at.c.x, u, v), width);
+        const std::uint32_t y = skybark::shared::alpha_texel(
+            skybark::shared::alpha_place(at.a.y, at.b.y, at.c.y, u, v), at.size >> 16);
+        float opacity = 0;
+        std::memcpy(&opacity, words.data() + at.map + std::size_t{y} * width + x, sizeof opacity);
+        return opacity < at.cutoff;
+    }
+
+    skybark::ray_bundle bundle_;
+    glm::vec3 from_;
+    float side_;
+    skybark::gather_hit hit_;
+};
 
 /// Appends patterns; on this backend each is done when its call returns.
 class recorder {
@@ -633,7 +694,78 @@ class recorder {
         });
     }
 
+    template <skybark::peel_kernel K>
+    void peel(const K& kernel, const skybark::bindings<device, K>& buffers,
+              skybark::range triangles, const skybark::peeled_layer<device>& layer) {
+        const auto depth = records<float>(layer.depth).first(layer.width * layer.height);
+        const auto triangle =
+            records<std::uint32_t>(layer.triangle).first(layer.width * layer.height);
+        const std::vector<float> before(depth.begin(), depth.end());
+        std::fill(depth.begin(), depth.end(), 0.0f);
+        std::fill(triangle.begin(), triangle.end(), skybark::no_surface);
+        with_spans<K>(buffers, [&](auto... spans) {
+            for (std::uint32_t t = triangles.first; t - triangles.first < triangles.count; ++t) {
+                const auto keep = [&](std::uint32_t x, std::uint32_t y, float z) {
+                    const std::size_t at = std::size_t{y} * layer.width + x;
+                    if (z < before[at] && z > depth[at]) {
+                        depth[at] = z;
+                        triangle[at] = t;
+                    }
+                };
+                peel_triangle({kernel.corner(3 * t, spans...), kernel.corner(3 * t + 1, spans...),
+                               kernel.corner(3 * t + 2, spans...)},
+                              layer.width, layer.height, keep);
+            }
+        });
+        const auto left = static_cast<std::uint32_t>(
+            std::count_if(depth.begin(), depth.end(), [](float z) { return z > 0; }));
+        write_count(layer.count, {left, left});
+    }
+
+    void resolve(const skybark::ray_bundle& bundle, const skybark::bundle_work<device>& work) {
+        const auto triangles = records<skybark::gather_triangle>(work.triangles);
+        const auto samples = records<skybark::gather_sample>(work.samples);
+        const auto alpha = records<std::uint32_t>(work.alpha);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            bundle_ray ray(bundle, samples[i]);
+            for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+                ray.meet(t, triangles[t], alpha);
+            }
+            records<skybark::gather_hit>(work.hits)[i] = ray.hit();
+        }
+    }
+
   private:
+    /// Calls `keep(x, y, z)` for each pixel whose middle the triangle covers. Row 0 is at y = −1.
+    template <class Keep>
+    static void peel_triangle(const std::array<glm::vec4, 3>& corners, std::uint32_t width,
+                              std::uint32_t height, Keep&& keep) {
+        std::vector<corner<0>> polygon;
+        for (const glm::vec4& position : corners) {
+            const bool is_finite =
+                std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z);
+            if (!is_finite) {
+                return;
+            }
+            polygon.push_back({position, {}});
+        }
+        for (const glm::vec4& plane : clip_planes) {
+            polygon = clipped(polygon, plane);
+        }
+        for (corner<0>& c : polygon) {
+            c.x = std::llround((c.position.x * 0.5 + 0.5) * width * 256.0);
+            c.y = std::llround((c.position.y * 0.5 + 0.5) * height * 256.0);
+        }
+        for (std::size_t k = 2; k < polygon.size(); ++k) {
+            const std::array c{polygon[0], polygon[k - 1], polygon[k]};
+            cover(c, width, height, [&](std::uint32_t x, std::uint32_t y, const auto& weight) {
+                keep(x, y,
+                     static_cast<float>(weight[0] * c[0].position.z + weight[1] * c[1].position.z +
+                                        weight[2] * c[2].position.z));
+            });
+        }
+    }
+
     template <class K>
     void draw_reading(const K& kernel, const skybark::bindings<device, K>& buffers,
                       const images& read, const skybark::draw_geometry<device>& geometry,

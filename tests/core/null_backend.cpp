@@ -3,6 +3,7 @@
 #include <skybark/conformance/null_backend.hpp>
 
 #include <skybark/kernels/probe_level.hpp>
+#include <skybark/kernels/probe_peel.hpp>
 #include <skybark/kernels/probe_rings.hpp>
 #include <skybark/kernels/probe_slabs.hpp>
 #include <skybark/kernels/probe_strips.hpp>
@@ -21,6 +22,7 @@ static_assert(maps<null_device, kernels::probe_level>);
 static_assert(expands<null_device, kernels::probe_strips>);
 static_assert(expands_rings<null_device, kernels::probe_rings>);
 static_assert(draws<null_device, kernels::probe_surface>);
+static_assert(peels<null_device, kernels::probe_peel>);
 
 TEST(null_backend, counts_objects_and_bytes) {
     null_device device;
@@ -121,6 +123,31 @@ TEST(null_backend, volumes_take_memory_and_calls_are_counted) {
     EXPECT_EQ(counts.sorted_pairs, 20u);
     EXPECT_EQ(counts.mapped_voxels, 24u);
     EXPECT_EQ(counts.largest_view, 400u);
+}
+
+TEST(null_backend, counts_layers_and_bundles) {
+    null_device device;
+    const auto corners = device.create_buffer(16 * 3 * 10);
+    const auto layer = device.create_buffer(4096);
+    const auto records = device.create_buffer(48 * 20);
+    using views = buffer_view<null_device>;
+    ASSERT_TRUE(run(device, [&](auto& r) {
+        r.peel(kernels::probe_peel{}, {view<null_device>(*corners)}, range{3, 7},
+               peeled_layer<null_device>{
+                   20, 10, views{&*layer, 0, 800}, views{&*layer, 800, 800}, {&*layer, 1600, 16}});
+        r.resolve(ray_bundle{}, bundle_work<null_device>{view<null_device>(*records),
+                                                         {},
+                                                         views{&*layer, 0, 320},
+                                                         views{&*layer, 320, 160}});
+    }));
+    const auto counts = device.counts();
+    EXPECT_EQ(counts.peels, 1u);
+    EXPECT_EQ(counts.peeled_triangles, 7u);
+    EXPECT_EQ(counts.peeled_pixels, 200u);
+    EXPECT_EQ(counts.resolves, 1u);
+    EXPECT_EQ(counts.resolved_samples, 10u);
+    EXPECT_EQ(counts.resolved_triangles, 20u);
+    EXPECT_EQ(counts.largest_view, 960u);
 }
 
 TEST(null_backend, can_be_lost) {

@@ -7,6 +7,7 @@
 #include <skybark/kernels/probe_image.hpp>
 #include <skybark/kernels/probe_level.hpp>
 #include <skybark/kernels/probe_map.hpp>
+#include <skybark/kernels/probe_peel.hpp>
 #include <skybark/kernels/probe_rings.hpp>
 #include <skybark/kernels/probe_slabs.hpp>
 #include <skybark/kernels/probe_strips.hpp>
@@ -32,6 +33,7 @@ static_assert(accumulates<checked, kernels::probe_slabs>);
 static_assert(maps_grids<checked, kernels::probe_volume>);
 static_assert(maps_voxels<checked, kernels::probe_voxels>);
 static_assert(draws_volumes<checked, kernels::probe_volume_draw>);
+static_assert(peels<checked, kernels::probe_peel> && resolves_bundles<checked>);
 // What the wrapped device does not have is not there.
 static_assert(!fuses_accumulate_scan<null_device, kernels::probe_slabs>);
 static_assert(!fuses_accumulate_scan<checked, kernels::probe_slabs>);
@@ -409,12 +411,18 @@ TEST_F(validation, scans_and_sorts_of_words) {
     expect_said({"the values and the count overlap"});
     r->sort(keys, values, {{&b, 512, 8}, 64});
     expect_said({"count_record"});
+    r->sort(keys, values, 0u);
+    expect_said({"sort", "0 bits", "1 to 32"});
+    r->sort(keys, values, {apart, 64}, 33);
+    expect_said({"sort of a count", "33 bits"});
     EXPECT_EQ(inner.counts().sorts + inner.counts().word_scans, 0u);
     r->scan(keys, apart);
     r->sort(keys, values);
     r->sort(keys, values, {apart, 64});
+    r->sort(keys, values, 32u);
+    r->sort(keys, values, {apart, 64}, 1);
     EXPECT_TRUE(said.empty());
-    EXPECT_EQ(inner.counts().sorts, 2u);
+    EXPECT_EQ(inner.counts().sorts, 4u);
     EXPECT_EQ(inner.counts().words_scanned, 64u);
 }
 
@@ -474,6 +482,111 @@ TEST_F(validation, volumes_of_kernels) {
     draw(&floats, &texture);
     EXPECT_TRUE(said.empty());
     EXPECT_EQ(inner.counts().draws, 1u);
+}
+
+TEST_F(validation, peels) {
+    const auto corners = buffer(4800);
+    const auto b = buffer(8192);
+    auto r = device.begin();
+    const peeled_layer<checked> right{8, 5, {&b, 0, 160}, {&b, 160, 160}, {&b, 320, 16}};
+    const auto peel = [&](range triangles, const peeled_layer<checked>& layer) {
+        r->peel(kernels::probe_peel{}, {view<checked>(corners)}, triangles, layer);
+    };
+    /// The right call with one thing changed.
+    const auto with = [&](auto peeled_layer<checked>::*member, auto value) {
+        peeled_layer<checked> layer = right;
+        layer.*member = value;
+        peel({0, 100}, layer);
+    };
+    using layer = peeled_layer<checked>;
+    using view = buffer_view<checked>;
+    with(&layer::width, 0u);
+    expect_said({"peel", "0 x 5", "no pixels"});
+    with(&layer::height, 513u);
+    expect_said({"8 x 513", "512"});
+    with(&layer::height, 126u);
+    expect_said({"8 x 126", "1000"});
+    with(&layer::width, 9u);
+    expect_said({"the depths", "160 bytes", "9 x 5", "180"});
+    with(&layer::depth, view{});
+    expect_said({"the depths", "names no buffer"});
+    with(&layer::triangle, view{&b, 160, 156});
+    expect_said({"the triangles' numbers", "156 bytes", "160"});
+    with(&layer::triangle, view{&b, 0, 160});
+    expect_said({"the depths and the triangles' numbers overlap"});
+    with(&layer::count, view{&b, 320, 8});
+    expect_said({"the count", "8 bytes", "count_record", "16"});
+    with(&layer::count, view{&b, 304, 16});
+    expect_said({"the triangles' numbers and the count overlap"});
+    with(&layer::depth, view{&corners, 0, 160});
+    expect_said({"buffer 0 and the depths overlap"});
+    peel({0, 1001}, right);
+    expect_said({"1001 elements", "1000"});
+    peel({1431655765, 1}, right);
+    expect_said({"1431655765", "beyond 32 bits"});
+    EXPECT_EQ(inner.counts().peels, 0u);
+    peel({0, 100}, right);
+    peel({1431655764, 1}, right);
+    EXPECT_TRUE(said.empty());
+    EXPECT_EQ(inner.counts().peels, 2u);
+}
+
+TEST_F(validation, bundles) {
+    const auto triangles = buffer(480);
+    const auto samples = buffer(320);
+    const auto hits = buffer(320);
+    auto r = device.begin();
+    const bundle_work<checked> right{
+        view<checked>(triangles), {}, view<checked>(samples), {&hits, 0, 160}};
+    ray_bundle bundle;
+    bundle.direction.w = 4;
+    const auto with = [&](auto bundle_work<checked>::*member, buffer_view<checked> value) {
+        bundle_work<checked> work = right;
+        work.*member = value;
+        r->resolve(bundle, work);
+    };
+    using work = bundle_work<checked>;
+    with(&work::triangles, {});
+    expect_said({"resolve", "the triangles", "names no buffer"});
+    with(&work::triangles, {&triangles, 0, 464});
+    expect_said({"the triangles", "464 bytes", "whole", "48"});
+    with(&work::samples, {&samples, 0, 304});
+    expect_said({"the samples", "304 bytes", "32"});
+    with(&work::hits, {&hits, 0, 152});
+    expect_said({"the hits", "152 bytes", "16"});
+    with(&work::hits, {&hits, 0, 144});
+    expect_said({"10 samples", "9 hits"});
+    with(&work::hits, {&triangles, 0, 160});
+    expect_said({"the triangles and the hits overlap"});
+    with(&work::hits, {&samples, 160, 160});
+    expect_said({"the samples and the hits overlap"});
+    with(&work::alpha, {&hits, 144, 32});
+    expect_said({"the alpha maps and the hits overlap"});
+    with(&work::alpha, {&hits, 304, 32});
+    expect_said({"the alpha maps", "outside its buffer"});
+    const auto many = buffer(48048);
+    with(&work::triangles, view<checked>(many));
+    expect_said({"1001 triangles", "1000"});
+    const auto with_axis = [&](auto change) {
+        ray_bundle wrong = bundle;
+        change(wrong);
+        r->resolve(wrong, right);
+    };
+    with_axis([](ray_bundle& wrong) { wrong.right.x = 0.5f; });
+    expect_said({"right", "unit vector", "0.5"});
+    with_axis([](ray_bundle& wrong) { wrong.direction.z = std::nanf(""); });
+    expect_said({"direction", "unit vector", "nan"});
+    with_axis([](ray_bundle& wrong) { wrong.right.w = -1; });
+    expect_said({"lifts", "-1.0"});
+    with_axis([](ray_bundle& wrong) { wrong.direction.w = 0; });
+    expect_said({"cells", "0.0"});
+    EXPECT_EQ(inner.counts().resolves, 0u);
+    r->resolve(bundle, right);
+    with(&work::alpha, {&hits, 160, 160});
+    with(&work::hits, view<checked>(hits));
+    EXPECT_TRUE(said.empty());
+    EXPECT_EQ(inner.counts().resolves, 3u);
+    EXPECT_EQ(inner.counts().resolved_samples, 30u);
 }
 
 using validation_death = validation;

@@ -48,6 +48,12 @@ struct null_counts {
     std::uint64_t words_scanned = 0;
     std::uint64_t sorts = 0;
     std::uint64_t sorted_pairs = 0; ///< the limit where only the device knows
+    std::uint64_t peels = 0;
+    std::uint64_t peeled_triangles = 0;
+    std::uint64_t peeled_pixels = 0;
+    std::uint64_t resolves = 0;
+    std::uint64_t resolved_samples = 0;
+    std::uint64_t resolved_triangles = 0;
     std::uint64_t voxel_maps = 0;
     std::uint64_t mapped_voxels = 0;
     std::uint64_t largest_view = 0; ///< bytes, of views given to kernels
@@ -392,6 +398,22 @@ class null_recorder {
         note_sort(keys, values, pairs.limit);
     }
 
+    template <peel_kernel K>
+    void peel(const K&, const bindings<null_device, K>& buffers, range triangles,
+              const peeled_layer<null_device>& layer) {
+        ++counts().peels;
+        counts().peeled_triangles += triangles.count;
+        counts().peeled_pixels += std::uint64_t{layer.width} * layer.height;
+        note_views(buffers);
+        note_views(std::array{layer.depth, layer.triangle, layer.count});
+    }
+    void resolve(const ray_bundle&, const bundle_work<null_device>& work) {
+        ++counts().resolves;
+        counts().resolved_samples += work.samples.size / sizeof(gather_sample);
+        counts().resolved_triangles += work.triangles.size / sizeof(gather_triangle);
+        note_views(std::array{work.triangles, work.alpha, work.samples, work.hits});
+    }
+
   private:
     [[nodiscard]] null_counts& counts() const { return device_.state_->counts; }
 
@@ -464,5 +486,6 @@ inline result<void> null_device::submit(null_recorder&) {
 
 static_assert(backend<null_device>);
 static_assert(volume_backend<null_device> && scans<null_device> && sorts<null_device>);
+static_assert(resolves_bundles<null_device>);
 
 } // namespace skybark::conformance

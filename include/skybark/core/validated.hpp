@@ -16,6 +16,7 @@
 // its owner moves, as views of it may have been recorded.
 
 #include <skybark/core/backend.hpp>
+#include <skybark/core/validated_gather.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -557,6 +558,32 @@ class validated<B>::recorder {
         }
     }
 
+    template <peel_kernel K>
+    requires peels<B, K>
+    void peel(const K& kernel, const bindings<validated, K>& buffers, range triangles,
+              const peeled_layer<validated>& layer) {
+        check c(*this, "peel");
+        c.template buffers<K>(buffers, false);
+        c.elements(triangles);
+        c.that(3 * (std::uint64_t{triangles.first} + triangles.count) <= std::uint64_t{1} << 32,
+               "triangles from " + detail::digits(triangles.first) + " on, " +
+                   detail::digits(triangles.count) + " of them, have corners beyond 32 bits.");
+        detail::check_layer(c, layer, buffers, limits_);
+        if (c.passed()) {
+            inner_.peel(kernel, convert(buffers), triangles, convert(layer));
+        }
+    }
+    void resolve(const ray_bundle& bundle,
+                 const bundle_work<validated>& work) requires resolves_bundles<B> {
+        check c(*this, "resolve");
+        detail::check_bundle(c, bundle);
+        detail::check_bundle_work(c, work, limits_);
+        if (c.passed()) {
+            inner_.resolve(bundle, bundle_work<B>{convert(work.triangles), convert(work.alpha),
+                                                  convert(work.samples), convert(work.hits)});
+        }
+    }
+
   private:
     friend class validated;
 
@@ -886,6 +913,10 @@ class validated<B>::recorder {
     }
     [[nodiscard]] static triangle_list<B> convert(const triangle_list<validated>& out) {
         return {convert(out.vertices), convert(out.count), out.policy};
+    }
+    [[nodiscard]] static peeled_layer<B> convert(const peeled_layer<validated>& layer) {
+        return {layer.width, layer.height, convert(layer.depth), convert(layer.triangle),
+                convert(layer.count)};
     }
     [[nodiscard]] static draw_geometry<B> convert(const draw_geometry<validated>& what) {
         return {convert(what.indices), what.first, what.count, what.base_vertex,
