@@ -491,23 +491,33 @@ inline void recorder::scan(const buffer_view<device>& words, const buffer_view<d
 }
 
 inline void recorder::sort_pairs(const buffer_view<device>& keys, const buffer_view<device>& values,
-                                 std::uint32_t limit, const buffer_view<device>& length) {
+                                 std::uint32_t limit, const buffer_view<device>& length,
+                                 std::uint32_t key_bits) {
     attempt([&] {
         const std::uint64_t room = std::min(keys.size, values.size) / 4;
+        const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(room, limit));
         return detail::sort_pairs(*context_, detail::bound(keys), detail::bound(values),
-                                  {0,
-                                   static_cast<std::uint32_t>(std::min<std::uint64_t>(room, limit)),
-                                   detail::bound(length)});
+                                  {0, count, detail::bound(length)}, key_bits);
     });
 }
 
 inline void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values) {
-    sort_pairs(keys, values, 0xffffffffu, {});
+    sort_pairs(keys, values, 0xffffffffu, {}, detail::word_bits);
 }
 
 inline void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values,
                            const counted<device>& pairs) {
-    sort_pairs(keys, values, pairs.limit, pairs.count);
+    sort_pairs(keys, values, pairs.limit, pairs.count, detail::word_bits);
+}
+
+inline void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+                           std::uint32_t key_bits) {
+    sort_pairs(keys, values, 0xffffffffu, {}, key_bits);
+}
+
+inline void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+                           const counted<device>& pairs, std::uint32_t key_bits) {
+    sort_pairs(keys, values, pairs.limit, pairs.count, key_bits);
 }
 
 // ---- volumes ------------------------------------------------------------------------------------

@@ -61,6 +61,11 @@ class recorder {
     void sort(const buffer_view<device>& keys, const buffer_view<device>& values);
     void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
               const counted<device>& pairs);
+    /// The same for keys below 2^key_bits, in a pass for every four bits (an even number of them).
+    void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+              std::uint32_t key_bits);
+    void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+              const counted<device>& pairs, std::uint32_t key_bits);
 
     /// A running sum along an axis of a volume, into another one of the same size.
     void scan(const volume& from, const volume& into, const volume_scan& how);
@@ -117,7 +122,7 @@ class recorder {
                           const draw_geometry<device>& geometry, const draw_target<device>& target,
                           const draw_state& state);
     void sort_pairs(const buffer_view<device>& keys, const buffer_view<device>& values,
-                    std::uint32_t limit, const buffer_view<device>& length);
+                    std::uint32_t limit, const buffer_view<device>& length, std::uint32_t key_bits);
 
     detail::context* context_;
     std::optional<error> error_;

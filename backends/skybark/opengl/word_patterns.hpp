@@ -94,7 +94,7 @@ inline void dispatch_scan(context& c, gl::handle program, const bound_range& wor
 
 inline constexpr std::uint32_t sort_block = 1024; ///< pairs that a group sorts
 inline constexpr std::uint32_t sort_digits = 16;
-inline constexpr std::uint32_t key_bits = 32;
+inline constexpr std::uint32_t word_bits = 32;
 inline constexpr std::uint32_t digit_bits = 4;
 
 struct key_values {
@@ -132,10 +132,10 @@ struct key_values {
     return {};
 }
 
-/// `pairs.count` pairs, or as many as the device knows, at most so many.
+/// `pairs.count` pairs, or as many as the device knows, at most so many; keys are below 2^key_bits.
 [[nodiscard]] inline result<void> sort_pairs(context& c, const bound_range& keys,
-                                             const bound_range& values,
-                                             const element_range& pairs) {
+                                             const bound_range& values, const element_range& pairs,
+                                             std::uint32_t key_bits) {
     const shader_stage count_stages[] = {{gl::compute_shader, sort_count_comp}};
     const shader_stage scatter_stages[] = {{gl::compute_shader, sort_scatter_comp}};
     const auto count = c.find_program(count_stages);
@@ -162,7 +162,9 @@ struct key_values {
     key_values there{part_of(c.objects.sort_pairs, 0, bytes),
                      part_of(c.objects.sort_pairs, aligned(c, bytes), bytes)};
     // An even number of passes: what is sorted ends where it began.
-    for (std::uint32_t shift = 0; shift < key_bits; shift += digit_bits) {
+    const std::uint32_t bits = std::min(key_bits, word_bits);
+    const std::uint32_t passes = (bits + 2 * digit_bits - 1) / (2 * digit_bits) * 2;
+    for (std::uint32_t shift = 0; shift < passes * digit_bits; shift += digit_bits) {
         if (auto done = sort_by_digit(c, *count, *scatter, here, there, pairs, shift); !done) {
             return done;
         }
