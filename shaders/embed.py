@@ -34,6 +34,7 @@ OPENGL = [
     ("kernel_slab", "slabs.frag"),
     ("kernel_fragment", "draw.vert"),
     ("kernel_fragment", "draw.frag"),
+    ("kernel_corner", "peel.vert"),
 ]
 VULKAN = [
     ("kernel_map", "map.comp"),
@@ -45,6 +46,7 @@ VULKAN = [
     ("kernel_slab", "accumulate.comp"),
     ("kernel_fragment", "draw.vert"),
     ("kernel_fragment", "draw.frag"),
+    ("kernel_corner", "peel.vert"),
 ]
 # Formulas that the CPU backend computes four at a time.
 LANES = {"sway"}
