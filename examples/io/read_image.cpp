@@ -74,7 +74,7 @@ result<trees::bark_texture> read_image(const std::string& path) {
     return texture;
 }
 
-result<trees::leaf_picture> read_leaf(const std::string& path) {
+result<colour_picture> read_colours(const std::string& path) {
     auto image = open_image(path);
     if (!image) {
         return failure(image.error());
@@ -85,11 +85,24 @@ result<trees::leaf_picture> read_leaf(const std::string& path) {
     if (!pixels) {
         return unreadable(path, "its " + image->size + " are damaged or not all there.");
     }
-    trees::leaf_picture picture;
+    colour_picture picture;
     picture.width = static_cast<std::uint32_t>(image->width);
     picture.height = static_cast<std::uint32_t>(image->height);
     const std::size_t bytes = std::size_t{4} * picture.width * picture.height;
     picture.rgba.assign(pixels.get(), pixels.get() + bytes);
+    picture.has_alpha = channels == 2 || channels == 4;
+    return picture;
+}
+
+result<trees::leaf_picture> read_leaf(const std::string& path) {
+    auto colours = read_colours(path);
+    if (!colours) {
+        return failure(colours.error());
+    }
+    trees::leaf_picture picture;
+    picture.width = colours->width;
+    picture.height = colours->height;
+    picture.rgba = std::move(colours->rgba);
     return trees::turned_over(picture);
 }
 

@@ -1,11 +1,14 @@
 #pragma once
-// read_image, read_leaf: the heights of a bark texture, or a leaf, from a picture file.
+// read_image, read_leaf, read_colours: the heights of a bark texture, a leaf, or any picture, from
+// a file.
 
 #include <skybark/core/result.hpp>
 #include <skybark/trees/bark_texture.hpp>
 #include <skybark/trees/leaf_texture.hpp>
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace skybark::io {
 
@@ -18,5 +21,16 @@ namespace skybark::io {
 /// Reads a leaf that stands on its stalk, as people look at leaves: sRGB, with what isn't leaf
 /// transparent. Row 0 of the result is the picture's bottom one. Errors as above.
 [[nodiscard]] result<trees::leaf_picture> read_leaf(const std::string& path);
+
+/// A picture as it is in a file: RGBA, 8 bits a channel, rows from the top.
+struct colour_picture {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<std::uint8_t> rgba; ///< 4 · width · height
+    bool has_alpha = false;         ///< otherwise alpha is 255
+};
+
+/// Reads any picture. Errors as above.
+[[nodiscard]] result<colour_picture> read_colours(const std::string& path);
 
 } // namespace skybark::io
