@@ -252,7 +252,7 @@ TEST_F(read_glb_scene, names_what_is_not_there) {
             {"base colour", "\"m\""});
     refused([](model& m) { m.extensionsRequired = {"KHR_draco_mesh_compression"}; },
             {"KHR_draco_mesh_compression"});
-    refused([](model& m) { m.nodes[0].mesh = -1; }, {"no triangles"});
+    refused([](model& m) { m.nodes[0].mesh = -1, m.nodes[0].name = "n"; }, {"no triangles"});
 }
 
 TEST_F(read_glb_scene, names_what_is_cut_off) {
