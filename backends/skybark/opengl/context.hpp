@@ -58,6 +58,14 @@ struct sum_targets {
     gl::handle layer_frame = 0;  ///< of one of them
 };
 
+/// What peels draw into. Kept until another size is needed.
+struct layer_target {
+    gl::handle fragments = 0; ///< a texture of two words a pixel: a triangle, the bits of a depth
+    gl::handle depth = 0;
+    gl::handle frame = 0; ///< the framebuffer of both
+    glm::uvec2 size{0};
+};
+
 /// A buffer that grows where it must, and is kept.
 struct scratch_buffer {
     gl::handle name = 0;
@@ -78,6 +86,7 @@ struct shared_objects {
     scratch_buffer sort_pairs;
     scratch_buffer sort_counts;
     sum_targets sums;
+    layer_target layer;
     gl::handle written = 0;               ///< a query
     gl::handle generated = 0;             ///< a query
     std::array<gl::handle, 4> samplers{}; ///< 2 · linear + repeat
@@ -146,6 +155,9 @@ class context {
     /// Makes `objects.sums.tiles`, or `layers`, exactly so large.
     [[nodiscard]] result<void> size_tiles(const glm::uvec2& size);
     [[nodiscard]] result<void> size_layers(const glm::uvec3& size);
+
+    /// Makes the textures of `objects.layer` exactly so large.
+    [[nodiscard]] result<void> size_layer(const glm::uvec2& size);
 
     /// What `draw` draws into. Attachments stay until they change, are destroyed, or `detach`.
     void attach(gl::handle color, gl::handle depth);
@@ -316,6 +328,7 @@ inline void context::create_objects() {
     gl.create_framebuffers(1, &objects.sums.tiles_frame);
     gl.create_framebuffers(1, &objects.sums.layers_frame);
     gl.create_framebuffers(1, &objects.sums.layer_frame);
+    gl.create_framebuffers(1, &objects.layer.frame);
     gl.create_queries(gl::transform_feedback_primitives_written, 1, &objects.written);
     gl.create_queries(gl::primitives_generated, 1, &objects.generated);
     const auto storage = [this](gl::handle& buffer, std::uint64_t bytes) {
@@ -353,13 +366,14 @@ inline context::~context() {
                                   objects.scan_sums.name,  objects.sort_pairs.name,
                                   objects.sort_counts.name};
     const gl::handle queries[] = {objects.written, objects.generated};
-    const gl::handle framebuffers[] = {objects.nothing, objects.target, sums.tiles_frame,
-                                       sums.layers_frame, sums.layer_frame};
-    const gl::handle textures[] = {sums.tiles, sums.layers};
+    const gl::handle framebuffers[] = {objects.nothing,   objects.target,   sums.tiles_frame,
+                                       sums.layers_frame, sums.layer_frame, objects.layer.frame};
+    const gl::handle textures[] = {sums.tiles, sums.layers, objects.layer.fragments,
+                                   objects.layer.depth};
     gl.delete_buffers(7, buffers);
     gl.delete_queries(2, queries);
-    gl.delete_framebuffers(5, framebuffers);
-    gl.delete_textures(2, textures);
+    gl.delete_framebuffers(6, framebuffers);
+    gl.delete_textures(4, textures);
     gl.delete_samplers(static_cast<int>(objects.samplers.size()), objects.samplers.data());
     gl.delete_transform_feedbacks(1, &objects.feedback);
     gl.delete_vertex_arrays(1, &objects.vertex_array);
@@ -589,6 +603,25 @@ inline result<void> context::size_layers(const glm::uvec3& size) {
         check("making layers of " + std::to_string(size.x) + " x " + std::to_string(size.y) +
               " x " + std::to_string(size.z) + " voxels to accumulate in");
     sums.layers_size = done ? size : glm::uvec3(0);
+    return done;
+}
+
+inline result<void> context::size_layer(const glm::uvec2& size) {
+    layer_target& layer = objects.layer;
+    if (layer.size == size) {
+        return {};
+    }
+    const auto texture = [&](gl::handle& name, gl::token format, gl::token attachment) {
+        gl.delete_textures(1, &name);
+        gl.create_textures(gl::texture_2d, 1, &name);
+        gl.texture_storage_2d(name, 1, format, static_cast<int>(size.x), static_cast<int>(size.y));
+        gl.named_framebuffer_texture(layer.frame, attachment, name, 0);
+    };
+    texture(layer.fragments, gl::rg32ui, gl::color_attachment0);
+    texture(layer.depth, gl::depth_component32f, gl::depth_attachment);
+    auto done = check("making a layer of " + std::to_string(size.x) + " x " +
+                      std::to_string(size.y) + " pixels to peel");
+    layer.size = done ? size : glm::uvec2(0);
     return done;
 }
 

@@ -482,6 +482,23 @@ void recorder::draw(const K& kernel, const bindings<device, K>& buffers,
                      state);
 }
 
+template <peel_kernel K>
+void recorder::peel(const K& kernel, const bindings<device, K>& buffers, range triangles,
+                    const peeled_layer<device>& layer) {
+    [[maybe_unused]] const std::uint64_t bytes = std::uint64_t{layer.width} * layer.height * 4;
+    assert(layer.depth.size >= bytes && layer.triangle.size >= bytes && "too few words for pixels");
+    assert(layer.count.size >= sizeof(count_record) && "no room for the count of a layer");
+    attempt([&] {
+        const auto ranges = detail::bound(buffers);
+        return detail::peel(*context_, {detail::bytes_of(kernel), ranges}, triangles,
+                            {program<K>::peel_vert,
+                             {layer.width, layer.height},
+                             detail::bound(layer.depth),
+                             detail::bound(layer.triangle),
+                             detail::bound(layer.count)});
+    });
+}
+
 // ---- words --------------------------------------------------------------------------------------
 
 inline void recorder::scan(const buffer_view<device>& words, const buffer_view<device>& total) {

@@ -101,21 +101,6 @@ struct rectangle_plan {
     return plan;
 }
 
-/// The fixed functions for pixels that are voxels: every one is written, row y of the target is y.
-inline void set_pixel_raster(const gl::functions& gl, const glm::uvec2& size, bool blend) {
-    gl.clip_control(gl::lower_left, gl::zero_to_one);
-    gl.viewport_indexed(0, 0, 0, static_cast<float>(size.x), static_cast<float>(size.y));
-    gl.depth_range_indexed(0, 0, 1);
-    gl.disable_i(gl::scissor_test, 0);
-    gl.color_mask_i(0, 1, 1, 1, 1);
-    gl.polygon_mode(gl::front_and_back, gl::fill);
-    gl.disable(gl::cull_face);
-    gl.disable(gl::depth_test);
-    blend ? gl.enable_i(gl::blend, 0) : gl.disable_i(gl::blend, 0);
-    gl.blend_func_separate_i(0, gl::one, gl::one, gl::one, gl::one);
-    gl.blend_equation_separate_i(0, gl::func_add, gl::func_add);
-}
-
 inline void bind_sums(context& c, std::uint32_t unit, gl::token access) {
     const gl::handle texture = unit == tiles_unit ? c.objects.sums.tiles : c.objects.sums.layers;
     c.gl.bind_image_texture(unit, texture, 0, 1, 0, access, gl::rg32f);

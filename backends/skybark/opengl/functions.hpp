@@ -60,12 +60,13 @@ inline constexpr token vertex_array_binding = 0x85B5, draw_framebuffer = 0x8CA9,
 inline constexpr token texture_2d = 0x0DE1, texture_binding_2d = 0x8069, texture0 = 0x84C0,
     active_texture = 0x84E0, sampler_binding = 0x8919, rgba = 0x1908, rgba8 = 0x8058, rgba32f = 0x8814,
     depth_component = 0x1902, depth_component32f = 0x8CAC, r32ui = 0x8236,
+    rg32ui = 0x823C,
     red_integer = 0x8D94, unsigned_byte = 0x1401, unsigned_int = 0x1405, float32 = 0x1406,
     texture_mag_filter = 0x2800, texture_min_filter = 0x2801, texture_wrap_s = 0x2802,
     texture_wrap_t = 0x2803, nearest = 0x2600, linear = 0x2601, repeat = 0x2901,
     clamp_to_edge = 0x812F;
 inline constexpr token viewport = 0x0BA2, depth_range = 0x0B70, scissor_test = 0x0C11,
-    depth_test = 0x0B71, depth_func = 0x0B74, depth_writemask = 0x0B72, lequal = 0x0203,
+    depth_test = 0x0B71, depth_func = 0x0B74, depth_writemask = 0x0B72, lequal = 0x0203, greater = 0x0204,
     always = 0x0207, stencil_test = 0x0B90, blend = 0x0BE2, blend_src_rgb = 0x80C9,
     blend_dst_rgb = 0x80C8, blend_src_alpha = 0x80CB, blend_dst_alpha = 0x80CA,
     blend_equation_rgb = 0x8009, blend_equation_alpha = 0x883D, func_add = 0x8006,
@@ -183,6 +184,7 @@ using debug_procedure = void(SKYBARK_OPENGL_CALL*)(token source, token type, han
     X(void, named_framebuffer_parameter, "glNamedFramebufferParameteri", (handle, token, int)) \
     X(void, named_framebuffer_draw_buffer, "glNamedFramebufferDrawBuffer", (handle, token)) \
     X(void, clear_named_framebuffer, "glClearNamedFramebufferfv", (handle, token, int, const float*)) \
+    X(void, clear_named_framebuffer_words, "glClearNamedFramebufferuiv", (handle, token, int, const std::uint32_t*)) \
     X(void, create_textures, "glCreateTextures", (token, int, handle*)) \
     X(void, delete_textures, "glDeleteTextures", (int, const handle*)) \
     X(void, texture_storage_2d, "glTextureStorage2D", (handle, int, token, int, int)) \

@@ -54,6 +54,7 @@
 #include <skybark/opengl/programs/probe_image.hpp>
 #include <skybark/opengl/programs/probe_level.hpp>
 #include <skybark/opengl/programs/probe_map.hpp>
+#include <skybark/opengl/programs/probe_peel.hpp>
 #include <skybark/opengl/programs/probe_rings.hpp>
 #include <skybark/opengl/programs/probe_slabs.hpp>
 #include <skybark/opengl/programs/probe_strips.hpp>

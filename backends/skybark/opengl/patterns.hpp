@@ -7,7 +7,8 @@
 //   expand_rings  the same, as points
 //   draw          vertices pulled from storage buffers by their number
 //
-// Volumes have patterns of their own, in volume_patterns.hpp and drawn_sums.hpp.
+// Volumes have patterns of their own, in volume_patterns.hpp and drawn_sums.hpp, words in
+// word_patterns.hpp, and layers of depths in peel.hpp.
 //
 // Each restores what it changed before it returns. A memory barrier ends each, so that whatever
 // comes next, here or in the caller's own code, sees what was written.
@@ -468,6 +469,22 @@ inline void set_raster(const gl::functions& gl, const draw_call& call) {
     gl.depth_func(state.depth_test ? gl::lequal : gl::always);
     state.blend == blend_mode::alpha ? gl.enable_i(gl::blend, 0) : gl.disable_i(gl::blend, 0);
     gl.blend_func_separate_i(0, gl::one, gl::one_minus_src_alpha, gl::one, gl::one_minus_src_alpha);
+    gl.blend_equation_separate_i(0, gl::func_add, gl::func_add);
+}
+
+/// The same for pixels that are numbers: all are written, and row 0 of the target is at clip y =
+/// −1.
+inline void set_pixel_raster(const gl::functions& gl, const glm::uvec2& size, bool blend) {
+    gl.clip_control(gl::lower_left, gl::zero_to_one);
+    gl.viewport_indexed(0, 0, 0, static_cast<float>(size.x), static_cast<float>(size.y));
+    gl.depth_range_indexed(0, 0, 1);
+    gl.disable_i(gl::scissor_test, 0);
+    gl.color_mask_i(0, 1, 1, 1, 1);
+    gl.polygon_mode(gl::front_and_back, gl::fill);
+    gl.disable(gl::cull_face);
+    gl.disable(gl::depth_test);
+    blend ? gl.enable_i(gl::blend, 0) : gl.disable_i(gl::blend, 0);
+    gl.blend_func_separate_i(0, gl::one, gl::one, gl::one, gl::one);
     gl.blend_equation_separate_i(0, gl::func_add, gl::func_add);
 }
 

@@ -6,7 +6,8 @@
 namespace skybark::opengl {
 
 /// Specialised for each kernel, with a member for each skeleton that it goes with: `map_comp`,
-/// `levels_comp`, `strips_geom`, `rings_geom`, `draw_vert`, `draw_frag`. shaders/embed.py makes it.
+/// `levels_comp`, `strips_geom`, `rings_geom`, `draw_vert`, `draw_frag`, `peel_vert`.
+/// shaders/embed.py makes it.
 template <class Kernel>
 struct program;
 

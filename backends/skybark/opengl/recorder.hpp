@@ -9,6 +9,7 @@
 #include <skybark/opengl/drawn_sums.hpp>
 #include <skybark/opengl/image.hpp>
 #include <skybark/opengl/patterns.hpp>
+#include <skybark/opengl/peel.hpp>
 #include <skybark/opengl/program.hpp>
 #include <skybark/opengl/volume.hpp>
 #include <skybark/opengl/volume_patterns.hpp>
@@ -54,6 +55,12 @@ class recorder {
     void draw(const K& kernel, const bindings<device, K>& buffers,
               const image_bindings<device, K>& images, const draw_geometry<device>& geometry,
               const draw_target<device>& target, const draw_state& state);
+
+    /// The next layer of depths. Of fragments of the same depth the lowest triangle's stays. Layers
+    /// larger than limits().max_image_size on a side are an error.
+    template <peel_kernel K>
+    void peel(const K& kernel, const bindings<device, K>& buffers, range triangles,
+              const peeled_layer<device>& layer);
 
     /// Running sums of words in place, the sum of all to the first word of `total`.
     void scan(const buffer_view<device>& words, const buffer_view<device>& total);
