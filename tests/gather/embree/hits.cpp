@@ -38,6 +38,8 @@ std::string name_of(const hit_case& c) {
            (c.route == gather::resolve_route::fastest ? "" : "_composed");
 }
 
+void PrintTo(const hit_case& c, std::ostream* out) { *out << name_of(c); }
+
 /// Counts of rays whose hits differ from Embree's.
 struct differences {
     std::uint64_t rays = 0;
