@@ -44,7 +44,8 @@ gather_hit nearer(gather_hit best, uint k, vec3 origin, float side) {
     }
     vec4 r = corners[3u * k + 2u];
     bundle_meeting met = meet_triangle(vec3(p.x, p.y, q.z), vec3(p.z, p.w, q.w),
-                                       vec3(q.x, q.y, r.x), origin.x, origin.y);
+                                       vec3(q.x, q.y, r.x), origin.x, origin.y,
+                                       meeting_slack(bundle));
     float distance = distance_along(met, side, origin.z, bundle.right.w);
     if (!(distance >= 0.0 && distance <= best.distance)) {
         return best;

@@ -15,7 +15,7 @@ gather_hit hit_at(uint number, float distance, float side, float x, float y) {
     vec3 a = across_bundle(bundle, t.a);
     vec3 b = across_bundle(bundle, t.b);
     vec3 c = across_bundle(bundle, t.c);
-    bundle_meeting met = meet_triangle(a, b, c, x, y);
+    bundle_meeting met = meet_triangle(a, b, c, x, y, meeting_slack(bundle));
     gather_hit found;
     found.distance = distance;
     found.surface = 2u * number + (side * facing_of_triangle(a, b, c) < 0.0 ? 0u : 1u);

@@ -75,9 +75,9 @@ struct bundle_hits {
         const glm::vec4 p = corners[3 * std::size_t{k}];
         const glm::vec4 q = corners[3 * std::size_t{k} + 1];
         const glm::vec4 r = corners[3 * std::size_t{k} + 2];
-        const shared::bundle_meeting met =
-            shared::meet_triangle(glm::vec3(p.x, p.y, q.z), glm::vec3(p.z, p.w, q.w),
-                                  glm::vec3(q.x, q.y, r.x), origin.x, origin.y);
+        const shared::bundle_meeting met = shared::meet_triangle(
+            glm::vec3(p.x, p.y, q.z), glm::vec3(p.z, p.w, q.w), glm::vec3(q.x, q.y, r.x), origin.x,
+            origin.y, shared::meeting_slack(bundle));
         const float distance = shared::distance_along(met, side, origin.z, bundle.right.w);
         if (!(distance >= 0.0f && distance <= best.distance)) {
             return best;

@@ -56,7 +56,8 @@ struct layer_hits {
         const glm::vec3 a = shared::across_bundle(bundle, t.a);
         const glm::vec3 b = shared::across_bundle(bundle, t.b);
         const glm::vec3 c = shared::across_bundle(bundle, t.c);
-        const shared::bundle_meeting met = shared::meet_triangle(a, b, c, x, y);
+        const shared::bundle_meeting met =
+            shared::meet_triangle(a, b, c, x, y, shared::meeting_slack(bundle));
         gather_hit found;
         found.distance = distance;
         found.surface = 2 * number + (side * shared::facing_of_triangle(a, b, c) < 0.0f ? 0u : 1u);

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 7f8754e850a58af7e9b3da3a3593c97aab3bd712a7dafe09edf78d3f788419f5
+// sha256 3307b4f24bedfbf0e63d3ae076ab10e943f14c855627ccefbf3337b835fce927
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -50,10 +50,26 @@ struct bundle_meeting {
     float v;      // … and of c
 };
 
+// How far beyond a triangle's box a line may be to meet it, m: as far as rounding goes.
+inline float meeting_slack(ray_bundle bundle)
+{
+    float slack = 1e-6f * bundle.centre.w;
+    return slack;
+}
+
+// Whether `at` lies between the least and the greatest of three numbers, or `slack` beyond.
+inline bool is_between(float a, float b, float c, float at, float slack)
+{
+    float low = min(a, min(b, c)) - slack;
+    float high = max(a, max(b, c)) + slack;
+    return at >= low && at <= high;
+}
+
 // The line at (x, y) and the triangle of these corners, all across the bundle (x, y and z). Lines
 // on an edge meet both of its triangles, those on a corner all of them. Triangles seen edge-on, and
-// those with a corner that is no number, meet nothing.
-inline bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
+// those with a corner that is no number, meet nothing; nor does a line far from a triangle so small
+// that its edges are rounding alone.
+inline bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y, float slack)
 {
     float ax = a.x - x;
     float ay = a.y - y;
@@ -67,6 +83,7 @@ inline bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
     float area = (e0 + e1) + e2;
     bool inside = (e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) ||
                   (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f);
+    inside = inside && is_between(a.x, b.x, c.x, x, slack) && is_between(a.y, b.y, c.y, y, slack);
     bundle_meeting found;
     found.facing = 0.0f;
     found.depth = 0.0f;

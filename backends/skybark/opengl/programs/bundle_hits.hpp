@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 6487f598f6acb9bdf63c4a0323570c33eecb70449755d6d723c66639f1f94539
+// sha256 677ac53067fc7cc92ca182e9b574c3258b039a27484b8bd11ab876ea4a5635b9
 #pragma once
 
 #include <skybark/kernels/bundle_hits.hpp>
@@ -204,7 +204,18 @@ struct bundle_meeting {
     float u;      // barycentric weight of b
     float v;      // … and of c
 };
-bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
+float meeting_slack(ray_bundle bundle)
+{
+    precise float slack = 1e-6f * bundle.centre.w;
+    return slack;
+}
+bool is_between(float a, float b, float c, float at, float slack)
+{
+    precise float low = min(a, min(b, c)) - slack;
+    precise float high = max(a, max(b, c)) + slack;
+    return at >= low && at <= high;
+}
+bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y, float slack)
 {
     precise float ax = a.x - x;
     precise float ay = a.y - y;
@@ -218,6 +229,7 @@ bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
     precise float area = (e0 + e1) + e2;
     bool inside = (e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) ||
                   (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f);
+    inside = inside && is_between(a.x, b.x, c.x, x, slack) && is_between(a.y, b.y, c.y, y, slack);
     bundle_meeting found;
     found.facing = 0.0f;
     found.depth = 0.0f;
@@ -382,7 +394,8 @@ gather_hit nearer(gather_hit best, uint k, vec3 origin, float side) {
     }
     vec4 r = corners[3u * k + 2u];
     bundle_meeting met = meet_triangle(vec3(p.x, p.y, q.z), vec3(p.z, p.w, q.w),
-                                       vec3(q.x, q.y, r.x), origin.x, origin.y);
+                                       vec3(q.x, q.y, r.x), origin.x, origin.y,
+                                       meeting_slack(bundle));
     float distance = distance_along(met, side, origin.z, bundle.right.w);
     if (!(distance >= 0.0 && distance <= best.distance)) {
         return best;
@@ -654,7 +667,18 @@ struct bundle_meeting {
     float u;      // barycentric weight of b
     float v;      // … and of c
 };
-bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
+float meeting_slack(ray_bundle bundle)
+{
+    precise float slack = 1e-6f * bundle.centre.w;
+    return slack;
+}
+bool is_between(float a, float b, float c, float at, float slack)
+{
+    precise float low = min(a, min(b, c)) - slack;
+    precise float high = max(a, max(b, c)) + slack;
+    return at >= low && at <= high;
+}
+bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y, float slack)
 {
     precise float ax = a.x - x;
     precise float ay = a.y - y;
@@ -668,6 +692,7 @@ bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
     precise float area = (e0 + e1) + e2;
     bool inside = (e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) ||
                   (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f);
+    inside = inside && is_between(a.x, b.x, c.x, x, slack) && is_between(a.y, b.y, c.y, y, slack);
     bundle_meeting found;
     found.facing = 0.0f;
     found.depth = 0.0f;
@@ -832,7 +857,8 @@ gather_hit nearer(gather_hit best, uint k, vec3 origin, float side) {
     }
     vec4 r = corners[3u * k + 2u];
     bundle_meeting met = meet_triangle(vec3(p.x, p.y, q.z), vec3(p.z, p.w, q.w),
-                                       vec3(q.x, q.y, r.x), origin.x, origin.y);
+                                       vec3(q.x, q.y, r.x), origin.x, origin.y,
+                                       meeting_slack(bundle));
     float distance = distance_along(met, side, origin.z, bundle.right.w);
     if (!(distance >= 0.0 && distance <= best.distance)) {
         return best;

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 14d849e15a73c509e2ae4a745f68d2c4986f12f22833824f54f93ae3bd303630
+// sha256 2b36def77d85a33346a20e359aa83c71e819022f2ee82910a451cd5016834a72
 #pragma once
 
 #include <skybark/kernels/bundle_key.hpp>
@@ -193,7 +193,18 @@ struct bundle_meeting {
     float u;      // barycentric weight of b
     float v;      // … and of c
 };
-bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
+float meeting_slack(ray_bundle bundle)
+{
+    precise float slack = 1e-6f * bundle.centre.w;
+    return slack;
+}
+bool is_between(float a, float b, float c, float at, float slack)
+{
+    precise float low = min(a, min(b, c)) - slack;
+    precise float high = max(a, max(b, c)) + slack;
+    return at >= low && at <= high;
+}
+bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y, float slack)
 {
     precise float ax = a.x - x;
     precise float ay = a.y - y;
@@ -207,6 +218,7 @@ bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
     precise float area = (e0 + e1) + e2;
     bool inside = (e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) ||
                   (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f);
+    inside = inside && is_between(a.x, b.x, c.x, x, slack) && is_between(a.y, b.y, c.y, y, slack);
     bundle_meeting found;
     found.facing = 0.0f;
     found.depth = 0.0f;
@@ -542,7 +554,18 @@ struct bundle_meeting {
     float u;      // barycentric weight of b
     float v;      // … and of c
 };
-bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
+float meeting_slack(ray_bundle bundle)
+{
+    precise float slack = 1e-6f * bundle.centre.w;
+    return slack;
+}
+bool is_between(float a, float b, float c, float at, float slack)
+{
+    precise float low = min(a, min(b, c)) - slack;
+    precise float high = max(a, max(b, c)) + slack;
+    return at >= low && at <= high;
+}
+bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y, float slack)
 {
     precise float ax = a.x - x;
     precise float ay = a.y - y;
@@ -556,6 +579,7 @@ bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
     precise float area = (e0 + e1) + e2;
     bool inside = (e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) ||
                   (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f);
+    inside = inside && is_between(a.x, b.x, c.x, x, slack) && is_between(a.y, b.y, c.y, y, slack);
     bundle_meeting found;
     found.facing = 0.0f;
     found.depth = 0.0f;

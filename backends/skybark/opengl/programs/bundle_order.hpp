@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 81ddf0b5c437f5f633e0ec34442441fba170ab777066737f793d6330ce971882
+// sha256 ed4a9d28d84a6b8c71b6f36f798f625c9250566be7ad5af673d3beac7d2150dc
 #pragma once
 
 #include <skybark/kernels/bundle_order.hpp>
@@ -193,7 +193,18 @@ struct bundle_meeting {
     float u;      // barycentric weight of b
     float v;      // … and of c
 };
-bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
+float meeting_slack(ray_bundle bundle)
+{
+    precise float slack = 1e-6f * bundle.centre.w;
+    return slack;
+}
+bool is_between(float a, float b, float c, float at, float slack)
+{
+    precise float low = min(a, min(b, c)) - slack;
+    precise float high = max(a, max(b, c)) + slack;
+    return at >= low && at <= high;
+}
+bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y, float slack)
 {
     precise float ax = a.x - x;
     precise float ay = a.y - y;
@@ -207,6 +218,7 @@ bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
     precise float area = (e0 + e1) + e2;
     bool inside = (e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) ||
                   (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f);
+    inside = inside && is_between(a.x, b.x, c.x, x, slack) && is_between(a.y, b.y, c.y, y, slack);
     bundle_meeting found;
     found.facing = 0.0f;
     found.depth = 0.0f;
@@ -555,7 +567,18 @@ struct bundle_meeting {
     float u;      // barycentric weight of b
     float v;      // … and of c
 };
-bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
+float meeting_slack(ray_bundle bundle)
+{
+    precise float slack = 1e-6f * bundle.centre.w;
+    return slack;
+}
+bool is_between(float a, float b, float c, float at, float slack)
+{
+    precise float low = min(a, min(b, c)) - slack;
+    precise float high = max(a, max(b, c)) + slack;
+    return at >= low && at <= high;
+}
+bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y, float slack)
 {
     precise float ax = a.x - x;
     precise float ay = a.y - y;
@@ -569,6 +592,7 @@ bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
     precise float area = (e0 + e1) + e2;
     bool inside = (e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) ||
                   (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f);
+    inside = inside && is_between(a.x, b.x, c.x, x, slack) && is_between(a.y, b.y, c.y, y, slack);
     bundle_meeting found;
     found.facing = 0.0f;
     found.depth = 0.0f;

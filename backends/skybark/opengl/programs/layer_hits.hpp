@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 30c97d9537eb99e1b97359486943f7c4121cfe782af6fb52f8496d5826713f1a
+// sha256 943dce0cc489305d94c469c607afc3f1c4bd3ca1996e5e5d6aff916a337c4357
 #pragma once
 
 #include <skybark/kernels/layer_hits.hpp>
@@ -193,7 +193,18 @@ struct bundle_meeting {
     float u;      // barycentric weight of b
     float v;      // … and of c
 };
-bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
+float meeting_slack(ray_bundle bundle)
+{
+    precise float slack = 1e-6f * bundle.centre.w;
+    return slack;
+}
+bool is_between(float a, float b, float c, float at, float slack)
+{
+    precise float low = min(a, min(b, c)) - slack;
+    precise float high = max(a, max(b, c)) + slack;
+    return at >= low && at <= high;
+}
+bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y, float slack)
 {
     precise float ax = a.x - x;
     precise float ay = a.y - y;
@@ -207,6 +218,7 @@ bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
     precise float area = (e0 + e1) + e2;
     bool inside = (e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) ||
                   (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f);
+    inside = inside && is_between(a.x, b.x, c.x, x, slack) && is_between(a.y, b.y, c.y, y, slack);
     bundle_meeting found;
     found.facing = 0.0f;
     found.depth = 0.0f;
@@ -346,7 +358,7 @@ gather_hit hit_at(uint number, float distance, float side, float x, float y) {
     vec3 a = across_bundle(bundle, t.a);
     vec3 b = across_bundle(bundle, t.b);
     vec3 c = across_bundle(bundle, t.c);
-    bundle_meeting met = meet_triangle(a, b, c, x, y);
+    bundle_meeting met = meet_triangle(a, b, c, x, y, meeting_slack(bundle));
     gather_hit found;
     found.distance = distance;
     found.surface = 2u * number + (side * facing_of_triangle(a, b, c) < 0.0 ? 0u : 1u);
@@ -578,7 +590,18 @@ struct bundle_meeting {
     float u;      // barycentric weight of b
     float v;      // … and of c
 };
-bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
+float meeting_slack(ray_bundle bundle)
+{
+    precise float slack = 1e-6f * bundle.centre.w;
+    return slack;
+}
+bool is_between(float a, float b, float c, float at, float slack)
+{
+    precise float low = min(a, min(b, c)) - slack;
+    precise float high = max(a, max(b, c)) + slack;
+    return at >= low && at <= high;
+}
+bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y, float slack)
 {
     precise float ax = a.x - x;
     precise float ay = a.y - y;
@@ -592,6 +615,7 @@ bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
     precise float area = (e0 + e1) + e2;
     bool inside = (e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) ||
                   (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f);
+    inside = inside && is_between(a.x, b.x, c.x, x, slack) && is_between(a.y, b.y, c.y, y, slack);
     bundle_meeting found;
     found.facing = 0.0f;
     found.depth = 0.0f;
@@ -731,7 +755,7 @@ gather_hit hit_at(uint number, float distance, float side, float x, float y) {
     vec3 a = across_bundle(bundle, t.a);
     vec3 b = across_bundle(bundle, t.b);
     vec3 c = across_bundle(bundle, t.c);
-    bundle_meeting met = meet_triangle(a, b, c, x, y);
+    bundle_meeting met = meet_triangle(a, b, c, x, y, meeting_slack(bundle));
     gather_hit found;
     found.distance = distance;
     found.surface = 2u * number + (side * facing_of_triangle(a, b, c) < 0.0 ? 0u : 1u);

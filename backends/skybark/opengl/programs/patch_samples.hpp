@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 4cfdd733975e3a26a6068a9e6611c07891b8bc0c5e1f58dde4a9d2b2c6860fa3
+// sha256 864b285519221f8c492a6bb29e6da6febf3a8404612b77bb788db0d4ec82a4a2
 #pragma once
 
 #include <skybark/kernels/patch_samples.hpp>
@@ -192,7 +192,18 @@ struct bundle_meeting {
     float u;      // barycentric weight of b
     float v;      // … and of c
 };
-bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
+float meeting_slack(ray_bundle bundle)
+{
+    precise float slack = 1e-6f * bundle.centre.w;
+    return slack;
+}
+bool is_between(float a, float b, float c, float at, float slack)
+{
+    precise float low = min(a, min(b, c)) - slack;
+    precise float high = max(a, max(b, c)) + slack;
+    return at >= low && at <= high;
+}
+bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y, float slack)
 {
     precise float ax = a.x - x;
     precise float ay = a.y - y;
@@ -206,6 +217,7 @@ bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
     precise float area = (e0 + e1) + e2;
     bool inside = (e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) ||
                   (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f);
+    inside = inside && is_between(a.x, b.x, c.x, x, slack) && is_between(a.y, b.y, c.y, y, slack);
     bundle_meeting found;
     found.facing = 0.0f;
     found.depth = 0.0f;
@@ -554,7 +566,18 @@ struct bundle_meeting {
     float u;      // barycentric weight of b
     float v;      // … and of c
 };
-bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
+float meeting_slack(ray_bundle bundle)
+{
+    precise float slack = 1e-6f * bundle.centre.w;
+    return slack;
+}
+bool is_between(float a, float b, float c, float at, float slack)
+{
+    precise float low = min(a, min(b, c)) - slack;
+    precise float high = max(a, max(b, c)) + slack;
+    return at >= low && at <= high;
+}
+bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y, float slack)
 {
     precise float ax = a.x - x;
     precise float ay = a.y - y;
@@ -568,6 +591,7 @@ bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y)
     precise float area = (e0 + e1) + e2;
     bool inside = (e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) ||
                   (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f);
+    inside = inside && is_between(a.x, b.x, c.x, x, slack) && is_between(a.y, b.y, c.y, y, slack);
     bundle_meeting found;
     found.facing = 0.0f;
     found.depth = 0.0f;

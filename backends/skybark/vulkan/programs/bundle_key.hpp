@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c2b369454d7e24af5a1e43061cedb846ad72ccb82eb653088df954415dc27e4c
+// sha256 0589fb1b1588a70a8dbbbf2f0dff24902e9bbe71ce100db46e8bc7b4fbd72032
 #pragma once
 
 #include <skybark/kernels/bundle_key.hpp>

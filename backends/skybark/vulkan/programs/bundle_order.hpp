@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 a98eb892956a84970c5e648266e682d7b364fe1650ef470504a6892d38215a14
+// sha256 c7379330c05bcb63c332783a3af6d7945019ed79a8acf1edfbe66b48e474e2ea
 #pragma once
 
 #include <skybark/kernels/bundle_order.hpp>

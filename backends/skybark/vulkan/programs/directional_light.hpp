@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 cac50d22d643da61baebe65bebb01f51f8c8a75de4d0c129319d842b8df04c8a
+// sha256 4df3f3ed523b2e509ff8b08e21efef75966b8caeef0958e852bf31b6fd647294
 #pragma once
 
 #include <skybark/kernels/directional_light.hpp>

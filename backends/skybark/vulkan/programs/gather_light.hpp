@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f6ff1189a7bdcb4f0daa9b7ae11349ab7e224b7db388f9cf44713c5dcc3c7ea8
+// sha256 fd33e85a575e367e5ce205f914bd7cee59ee3affe55cf9aae8ff6645e75c9120
 #pragma once
 
 #include <skybark/kernels/gather_light.hpp>

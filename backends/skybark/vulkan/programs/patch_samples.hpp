@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 2f39e412d41d3dcd4eba0e194e0e4c0a790c61abc69126bab95e91b24953313a
+// sha256 b68d23595dd84145037bbc66532ab600da7d39b51d7ec89949c18e5b423b0111
 #pragma once
 
 #include <skybark/kernels/patch_samples.hpp>
