@@ -9,6 +9,7 @@ namespace {
 
 using kernels::probe_image;
 using kernels::probe_map;
+using kernels::probe_peel;
 using kernels::probe_rings;
 using kernels::probe_slabs;
 using kernels::probe_strips;
@@ -466,6 +467,10 @@ class all_patterns {
         const buffer indices = *make_buffer<gpu, std::uint32_t>(device_, three);
         const std::vector<count_record> one{{1, 1, {0, 0}}};
         const buffer length = *make_buffer<gpu, count_record>(device_, one);
+        const std::vector<glm::vec4> sheet{{-1, -1, 0.5f, 1}, {1, -1, 0.75f, 1}, {-1, 1, 0.25f, 1},
+                                           {-1, 1, 0.5f, 1},  {1, -1, 0.5f, 1},  {1, 1, 0.25f, 1}};
+        const buffer sheets = *make_buffer<gpu, glm::vec4>(device_, sheet);
+        const buffer layers = *make_buffer<gpu, float>(device_, std::vector<float>(256, 1.0f));
         after("make_buffer");
         image source = *device_.create_image({2, 2, image_format::rgba8});
         image color = *device_.create_image({4, 4, image_format::rgba8});
@@ -517,6 +522,9 @@ class all_patterns {
         after("draw indirect");
         r.copy({&outs[0], 0, 64}, {&outs[7], 0, 64});
         after("copy");
+        r.peel(probe_peel{}, {view<gpu>(sheets)}, range{0, 2},
+               {8, 6, {&layers, 0, 192}, {&layers, 256, 192}, {&layers, 512, 16}});
+        after("peel");
         volume_patterns volumes(device_, after);
         volumes.record(r, color);
         EXPECT_TRUE(device_.submit(r));
@@ -528,6 +536,9 @@ class all_patterns {
             all.insert(all.end(), bytes.begin(), bytes.end());
         }
         after("download buffer");
+        std::vector<std::byte> peeled(1024);
+        EXPECT_TRUE(device_.download(layers, 0, peeled));
+        all.insert(all.end(), peeled.begin(), peeled.end());
         std::vector<std::byte> seen(64);
         for (const image* each : {&color, &depth}) {
             EXPECT_TRUE(device_.download(*each, seen));
