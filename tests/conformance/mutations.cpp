@@ -71,6 +71,12 @@ enum class fault {
     takes_first_volume,
     voxels_too_many,
     loses_last_voxel,
+    peels_nearest,
+    peels_again,
+    peels_upside_down,
+    keeps_peeled_depths,
+    peels_first_triangles,
+    counts_all_pixels,
 };
 
 /// A kernel whose picture stands on its head.
@@ -80,6 +86,17 @@ struct flipped : K {
     glm::vec4 vertex(std::uint32_t index, std::array<glm::vec4, K::varyings>& out,
                      Spans... spans) const {
         glm::vec4 p = K::vertex(index, out, spans...);
+        p.y = -p.y;
+        return p;
+    }
+};
+
+/// A kernel whose layers stand on their heads.
+template <class K>
+struct upside_down : K {
+    template <class... Spans>
+    glm::vec4 corner(std::uint32_t index, Spans... spans) const {
+        glm::vec4 p = K::corner(index, spans...);
         p.y = -p.y;
         return p;
     }
@@ -498,7 +515,63 @@ class mutant_recorder {
         });
     }
 
+    template <peel_kernel K>
+    void peel(const K& kernel, const bindings<mutant, K>& buffers, range triangles,
+              const peeled_layer<mutant>& layer) {
+        const peeled_layer<own::device> to{layer.width, layer.height, convert(layer.depth),
+                                           convert(layer.triangle), convert(layer.count)};
+        const auto depth = words_of<float>(layer.depth);
+        const std::vector<float> before(depth.begin(), depth.end());
+        if (which_ == fault::peels_again) {
+            for (float& z : depth) {
+                z = z == 0 ? 0 : std::nextafter(z, 2.0f); // what is as far passes as well
+            }
+        } else if (which_ == fault::peels_first_triangles) {
+            triangles.first = 0;
+        }
+        if (which_ == fault::peels_upside_down) {
+            inner_.peel(upside_down<K>{kernel}, convert(buffers), triangles, to);
+        } else {
+            inner_.peel(kernel, convert(buffers), triangles, to);
+        }
+        if (which_ == fault::peels_nearest) {
+            peel_on([&] { inner_.peel(kernel, convert(buffers), triangles, to); }, layer);
+        } else if (which_ == fault::keeps_peeled_depths) {
+            for (std::size_t i = 0; i < depth.size(); ++i) {
+                depth[i] = depth[i] == 0 ? before[i] : depth[i];
+            }
+        } else if (which_ == fault::counts_all_pixels) {
+            words_of<std::uint32_t>(layer.count)[1] = layer.width * layer.height;
+        }
+    }
+
   private:
+    template <class T>
+    [[nodiscard]] static std::span<T> words_of(const view& v) {
+        return {reinterpret_cast<T*>(v.buffer->data() + v.offset), v.size / sizeof(T)};
+    }
+    /// Peels until nothing is left, and keeps what was last.
+    template <class Peel>
+    static void peel_on(Peel&& peel, const peeled_layer<mutant>& layer) {
+        const auto depth = words_of<float>(layer.depth);
+        const auto triangle = words_of<std::uint32_t>(layer.triangle);
+        std::vector<float> nearest(depth.begin(), depth.end());
+        std::vector<std::uint32_t> whose(triangle.begin(), triangle.end());
+        while (words_of<std::uint32_t>(layer.count)[0] != 0) {
+            peel();
+            for (std::size_t i = 0; i < depth.size(); ++i) {
+                nearest[i] = depth[i] == 0 ? nearest[i] : depth[i];
+                whose[i] = depth[i] == 0 ? whose[i] : triangle[i];
+            }
+        }
+        std::copy(nearest.begin(), nearest.end(), depth.begin());
+        std::copy(whose.begin(), whose.end(), triangle.begin());
+        const auto left = nearest.size() - static_cast<std::size_t>(
+                                               std::count(nearest.begin(), nearest.end(), 0.0f));
+        words_of<std::uint32_t>(layer.count)[0] = static_cast<std::uint32_t>(left);
+        words_of<std::uint32_t>(layer.count)[1] = static_cast<std::uint32_t>(left);
+    }
+
     /// Calls `work` with the kernel, or with one that misreads its volumes.
     template <class K, class Work>
     void with_fault(const K& kernel, Work&& work) const {
@@ -583,7 +656,7 @@ class mutant_recorder {
         return which_ == fault::sorts_signed          ? key ^ 0x80000000u
                : which_ == fault::sorts_24_bits       ? key & 0x00ffffffu
                : which_ == fault::sorts_downwards     ? ~key
-               : which_ == fault::ignores_top_key_bit ? key & ~(1u << (key_bits - 1))
+               : which_ == fault::ignores_top_key_bit ? key & ~(1u << (key_bits + 31) % 32)
                                                       : key;
     }
 
@@ -845,6 +918,16 @@ const mutation all_mutations[] = {
      {"map.grids_one", "voxels.sizes", "draw.volumes_float32"}},
     {fault::voxels_too_many, "voxels_too_many", {"voxels.part"}},
     {fault::loses_last_voxel, "loses_last_voxel", {"voxels.sizes"}},
+    {fault::peels_nearest,
+     "peels_nearest",
+     {"peel.planes", "peel.random", "peel.intersecting", "peel.twice_in_one_recorder"}},
+    {fault::peels_again,
+     "peels_again",
+     {"peel.one", "peel.planes", "peel.equal_depths", "peel.limits", "peel.interleaved"}},
+    {fault::peels_upside_down, "peels_upside_down", {"peel.one", "peel.planes", "peel.random"}},
+    {fault::keeps_peeled_depths, "keeps_peeled_depths", {"peel.nothing", "peel.one"}},
+    {fault::peels_first_triangles, "peels_first_triangles", {"peel.part"}},
+    {fault::counts_all_pixels, "counts_all_pixels", {"peel.nothing", "peel.one"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(suite, mutations, testing::ValuesIn(all_mutations),

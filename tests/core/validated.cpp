@@ -411,8 +411,8 @@ TEST_F(validation, scans_and_sorts_of_words) {
     expect_said({"the values and the count overlap"});
     r->sort(keys, values, {{&b, 512, 8}, 64});
     expect_said({"count_record"});
-    r->sort(keys, values, 0u);
-    expect_said({"sort", "0 bits", "1 to 32"});
+    r->sort(keys, values, 64u);
+    expect_said({"sort", "64 bits", "32"});
     r->sort(keys, values, {apart, 64}, 33);
     expect_said({"sort of a count", "33 bits"});
     EXPECT_EQ(inner.counts().sorts + inner.counts().word_scans, 0u);
@@ -420,7 +420,7 @@ TEST_F(validation, scans_and_sorts_of_words) {
     r->sort(keys, values);
     r->sort(keys, values, {apart, 64});
     r->sort(keys, values, 32u);
-    r->sort(keys, values, {apart, 64}, 1);
+    r->sort(keys, values, {apart, 64}, 0);
     EXPECT_TRUE(said.empty());
     EXPECT_EQ(inner.counts().sorts, 4u);
     EXPECT_EQ(inner.counts().words_scanned, 64u);

@@ -24,6 +24,7 @@
 #include <skybark/conformance/draws.hpp>
 #include <skybark/conformance/grids.hpp>
 #include <skybark/conformance/images.hpp>
+#include <skybark/conformance/layers.hpp>
 #include <skybark/conformance/leaves.hpp>
 #include <skybark/conformance/lists.hpp>
 #include <skybark/conformance/maps.hpp>
@@ -98,6 +99,7 @@ template <backend B>
     add_ring_cases(all);
     add_image_cases(all);
     add_draw_cases(all);
+    add_peel_cases(all);
     add_chain_cases(all);
     add_branch_cases(all);
     add_bark_cases(all);

@@ -843,8 +843,8 @@ class validated<B>::recorder {
                                              " values.");
         c.apart(keys, "the keys", values, "the values");
         c.elements(words_in(keys));
-        c.that(key_bits >= 1 && key_bits <= 32,
-               "keys of " + detail::digits(key_bits) + " bits are asked for; a key has 1 to 32.");
+        c.that(key_bits <= 32,
+               "keys of " + detail::digits(key_bits) + " bits are given; a key has 32.");
     }
     static void check_target(check& c, const draw_target<validated>& target) {
         c.that(target.color != nullptr || target.depth != nullptr,
