@@ -5,9 +5,9 @@
 // Each triangle is a chart: laid flat as it is, its longest edge along the rows, so that a metre is
 // as many texels everywhere and areas keep their proportions. Charts stand on shelves, sorted by
 // height (Coffman, Garey, Johnson, Tarjan 1980, "next fit decreasing height"), upright or turned by
-// 180°, each as far to the left as its texels allow: a triangle and its turned neighbour share their
-// rectangle. A chart owns every texel that bilinear lookup reads anywhere on its triangle, so no
-// light bleeds from one into another and there needn't be a gutter beside.
+// 180°, each as far to the left as its texels allow: a triangle and its turned neighbour share
+// their rectangle. A chart owns every texel that bilinear lookup reads anywhere on its triangle, so
+// no light bleeds from one into another and there needn't be a gutter beside.
 
 #include <skybark/core/records.hpp>
 #include <skybark/core/result.hpp>
@@ -93,8 +93,13 @@ struct triangle_shape {
     return shape;
 }
 
-/// Lays a triangle flat, its height shrunk to what fits where rounding needs it. The texel whose
-/// centre is (½, ½) is the first that lookup reads.
+/// A texel is read where its centre is less than one texel away; texture coordinates are rounded to
+/// floats, which a little more makes good.
+inline constexpr double lookup_reach = 1.005;
+/// Then this is the least coordinate at which nothing before texel 0 is read.
+inline constexpr double chart_margin = 0.51;
+
+/// Lays a triangle flat.
 [[nodiscard]] inline flat_chart lay_flat(const triangle_shape& shape, double scale, bool turned) {
     const double width = shape.width * scale;
     const double height = shape.height * scale;
@@ -103,8 +108,7 @@ struct triangle_shape {
     flat_chart chart;
     for (std::uint32_t i = 0; i < 3; ++i) {
         const glm::dvec2 q = turned ? glm::dvec2(width, height) - p[i] : p[i];
-        // Lookup at a place reads the centres less than one texel away.
-        chart.corners[(shape.longest + i) % 3] = q + 0.5;
+        chart.corners[(shape.longest + i) % 3] = q + chart_margin;
     }
     return chart;
 }
@@ -115,8 +119,7 @@ inline void rows_of(const flat_chart& chart, std::vector<texel_row>& rows) {
     for (const glm::dvec2& p : chart.corners) {
         top = std::max(top, p.y);
     }
-    // A texel is read where |centre − place| < 1; rounding of coordinates to floats needs a little.
-    constexpr double reach = 1.001;
+    constexpr double reach = lookup_reach;
     const auto last_row = static_cast<std::int32_t>(std::floor(top - 0.5 + reach));
     rows.assign(static_cast<std::size_t>(last_row) + 1, texel_row{});
     for (std::int32_t row = 0; row <= last_row; ++row) {
@@ -388,8 +391,8 @@ class chart_sampler {
 } // namespace detail
 
 /// Lays out the charts of `triangles` and says which points ask for light: as many as texels have
-/// their centre on a triangle, size² at most. Triangles without area have none. The same input gives
-/// the same map on every machine that computes doubles as IEEE 754 has it.
+/// their centre on a triangle, size² at most. Triangles without area have none. The same input
+/// gives the same map on every machine that computes doubles as IEEE 754 has it.
 ///
 /// Errors (`bad_input`): no triangle with an area; a corner that isn't finite; a size of 0 or more
 /// than 32,768; charts that don't fit, with the size that would hold them.
@@ -460,7 +463,8 @@ class chart_sampler {
         const detail::flat_chart chart = detail::lay_flat(shapes[number], *scale, where.turned);
         for (std::size_t i = 0; i < 3; ++i) {
             const glm::dvec2 texel = chart.corners[i] + glm::dvec2(where.origin);
-            map.corners[3 * std::size_t{number} + i] = glm::vec2(texel / double{options.size});
+            map.corners[3 * std::size_t{number} + i] =
+                glm::vec2(texel / static_cast<double>(options.size));
         }
         sampler.add(triangles[number], number, chart, where.origin);
     }
