@@ -13,6 +13,10 @@
 #include <skybark/clouds/phase.hpp>
 #include <skybark/core/backend.hpp>
 #include <skybark/core/validated.hpp>
+#include <skybark/gather/bundle.hpp>
+#include <skybark/gather/bundle_peeler.hpp>
+#include <skybark/gather/bundle_resolver.hpp>
+#include <skybark/gather/scene.hpp>
 #include <skybark/trees/bark_mesh.hpp>
 #include <skybark/trees/bark_texture.hpp>
 #include <skybark/trees/branch_layout.hpp>
