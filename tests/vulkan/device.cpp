@@ -222,6 +222,9 @@ TEST_F(one_device, a_steady_frame_makes_nothing) {
     const std::vector<std::uint32_t> fresh(n, 1);
     const std::vector<range> levels{{0, 10}, {10, 20}, {30, 5000}, {5030, 7}};
     const auto values = must(d.create_buffer(n * 4));
+    const auto corners = must(d.create_buffer(3 * 16));
+    const auto pixels = must(d.create_buffer(16 * 16 * 4));
+    const auto numbers = must(d.create_buffer(16 * 16 * 4));
     const auto frame = [&] {
         go(d, [&](auto& r) {
             r.upload(view<device>(counts), bytes_of(fresh));
@@ -237,6 +240,11 @@ TEST_F(one_device, a_steady_frame_makes_nothing) {
                    bound<probe_surface>{view<device>(vertices), view<device>(tints)}, {},
                    draw_geometry<device>{{}, 0, 3, 0, {}},
                    draw_target<device>{&picture, nullptr, glm::vec4{0}, {}}, draw_state{});
+            r.peel(kernels::probe_peel{}, bound<kernels::probe_peel>{view<device>(corners)},
+                   range{0, 1},
+                   peeled_layer<device>{16, 16, view<device>(pixels), view<device>(numbers),
+                                        view<device>(record)});
+            r.sort(view<device>(values), view<device>(payloads), 20);
         });
     };
     made = 0;

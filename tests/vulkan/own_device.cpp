@@ -129,6 +129,41 @@ TEST_F(own_device, temporaries_outlive_the_recorder) {
               static_cast<float>(n - 2));
 }
 
+TEST_F(own_device, layers_go_into_the_callers_command_buffer) {
+    // A square in each half of the depths; the pictures that layers are drawn into are still there
+    // when the recorder is gone and another one has peeled since.
+    std::vector<glm::vec4> corners;
+    for (const float z : {0.25f, 0.75f}) {
+        const glm::vec4 a{-1, -1, z, 0}, b{1, -1, z, 0}, c{1, 1, z, 0}, d{-1, 1, z, 0};
+        corners.insert(corners.end(), {a, b, c, a, c, d});
+    }
+    const auto in = upload(*gpu, corners);
+    const auto number = must(gpu->create_buffer(64 * 4));
+    const auto count = must(gpu->create_buffer(16));
+    const auto far = upload(*gpu, std::vector<float>(64, 1.0f));
+    const auto near = upload(*gpu, std::vector<float>(64, 1.0f));
+    const auto layer = [&](const vulkan::buffer& depth) {
+        return peeled_layer<device>{8, 8, view<device>(depth), view<device>(number),
+                                    view<device>(count)};
+    };
+    const bound<kernels::probe_peel> from{view<device>(in)};
+    const VkCommandBuffer commands = raw->begin();
+    vulkan::ticket ticket;
+    {
+        auto recorder = must(gpu->record_into(commands));
+        recorder.peel(kernels::probe_peel{}, from, range{0, 4}, layer(far));
+        recorder.peel(kernels::probe_peel{}, from, range{0, 2}, layer(near));
+        ticket = must(gpu->finish(recorder));
+    }
+    const auto other = upload(*gpu, std::vector<float>(64, 0.5f));
+    go(*gpu, [&](auto& r) { r.peel(kernels::probe_peel{}, from, range{0, 4}, layer(other)); });
+    raw->submit_and_wait();
+    EXPECT_EQ(download<float>(*gpu, far, 64), std::vector<float>(64, 0.75f));
+    EXPECT_EQ(download<float>(*gpu, near, 64), std::vector<float>(64, 0.25f));
+    EXPECT_EQ(download<float>(*gpu, other, 64), std::vector<float>(64, 0.25f));
+    EXPECT_EQ(download<count_record>(*gpu, count, 1)[0].written, 64u);
+}
+
 TEST_F(own_device, a_recorder_without_submission_leaves_nothing) {
     { auto dropped = must(gpu->begin()); }
     auto recorder = must(gpu->begin());

@@ -9,6 +9,10 @@
 
 namespace skybark::vulkan {
 
+namespace detail {
+class layer_pictures;
+}
+
 /// A VkImage of the caller's, to be wrapped by `device::wrap`: 2-D, one level, one layer, one
 /// sample. It is never destroyed. It needs the usages of what is done with it: colour or depth
 /// attachment, sampled, transfer.
@@ -64,6 +68,7 @@ class image {
 
   private:
     friend class device;
+    friend class detail::layer_pictures;
 
     struct parts {
         foreign_image foreign; ///< also describes an image of our own
@@ -96,6 +101,23 @@ class image {
         p.filterable = c.filters(info.format);
         return c.check(c.call.create_image_view(c.device(), &info, c.callbacks(), &p.view),
                        "make a view of an image");
+    }
+
+    /// One of our own, its layout still undefined.
+    [[nodiscard]] static result<image> create(context& c, const image_description& what,
+                                              VkFormat format) {
+        parts p;
+        p.foreign.description = what;
+        p.foreign.format = format;
+        auto done = add_image(c, p);
+        if (done) {
+            done = add_view(c, p);
+        }
+        image made(c, p); // gives back what there is
+        if (!done) {
+            return failure(done.error());
+        }
+        return made;
     }
 
     /// A VkImage with its memory.

@@ -1,9 +1,10 @@
 #pragma once
 // Layouts, samplers and pipelines of a device, made when first needed and kept.
 //
-// Compute programs have buffers at bindings 0–11, draw programs at 0–7. From 16 on come the images
-// of each kind (image_slot) that a program has; programs with equally many of each share a layout.
-// Push constants are the 16 bytes of the skeletons and then the kernel's own.
+// Compute programs have buffers at bindings 0–11, draw programs at 0–7, those that peel one more.
+// From 16 on come the images of each kind (image_slot) that a program has; programs with equally
+// many of each share a layout. Push constants are the 16 bytes of the skeletons and then the
+// kernel's own.
 
 #include <skybark/vulkan/image.hpp>
 #include <skybark/vulkan/volume.hpp>
@@ -48,6 +49,7 @@ using spirv_words = std::span<const std::uint32_t>;
 /// What layouts differ by.
 struct layout_shape {
     bool draws = false;
+    bool peels = false;                              ///< a draw that reads one buffer more
     std::array<std::uint32_t, image_slots> images{}; ///< how many of each kind
 
     [[nodiscard]] auto operator<=>(const layout_shape&) const noexcept = default;
@@ -55,7 +57,8 @@ struct layout_shape {
         return draws ? draw_stages : VkShaderStageFlags{VK_SHADER_STAGE_COMPUTE_BIT};
     }
     [[nodiscard]] std::uint32_t buffers() const noexcept {
-        return draws ? static_cast<std::uint32_t>(max_kernel_buffers) : compute_bindings;
+        const auto drawn = static_cast<std::uint32_t>(max_kernel_buffers) + (peels ? 1 : 0);
+        return draws ? drawn : compute_bindings;
     }
 };
 
@@ -73,7 +76,7 @@ struct draw_program {
     layout_shape shape;
     VkFormat color = VK_FORMAT_UNDEFINED;
     VkFormat depth = VK_FORMAT_UNDEFINED;
-    draw_state state;
+    draw_state state; ///< a peel looks for the farthest in place of the nearest
 };
 
 namespace detail {
@@ -339,8 +342,9 @@ class pipeline_cache {
                                     ? VK_TRUE
                                     : VK_FALSE;
         depth.depthWriteEnable = has_depth && program.state.depth_write ? VK_TRUE : VK_FALSE;
-        depth.depthCompareOp =
-            program.state.depth_test ? VK_COMPARE_OP_LESS_OR_EQUAL : VK_COMPARE_OP_ALWAYS;
+        depth.depthCompareOp = program.shape.peels        ? VK_COMPARE_OP_GREATER
+                               : program.state.depth_test ? VK_COMPARE_OP_LESS_OR_EQUAL
+                                                          : VK_COMPARE_OP_ALWAYS;
         const bool has_color = program.color != VK_FORMAT_UNDEFINED;
         const VkPipelineColorBlendAttachmentState blend_one = blending(program.state.blend);
         auto blend = make<VkPipelineColorBlendStateCreateInfo>(

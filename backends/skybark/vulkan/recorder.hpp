@@ -5,6 +5,8 @@
 #include <skybark/vulkan/program.hpp>
 #include <skybark/vulkan/programs/own_count.hpp>
 #include <skybark/vulkan/programs/own_draw_arguments.hpp>
+#include <skybark/vulkan/programs/own_peel.hpp>
+#include <skybark/vulkan/programs/own_peeled.hpp>
 #include <skybark/vulkan/programs/own_scan.hpp>
 #include <skybark/vulkan/programs/own_scan_add.hpp>
 #include <skybark/vulkan/programs/own_scan_float32_float16.hpp>
@@ -48,6 +50,10 @@ template <class K>
 concept has_draw_program = requires {
     program<K>::draw_vert;
     program<K>::draw_frag;
+};
+template <class K>
+concept has_peel_program = requires {
+    program<K>::peel_vert;
 };
 
 namespace detail {
@@ -114,6 +120,19 @@ struct draw_call {
     std::uint32_t first = 0;
     std::uint32_t count = 0;
     std::uint32_t base_vertex = 0;
+};
+
+/// A peel, its types forgotten.
+struct peel_call {
+    spirv_words vertex;
+    push_block push;
+    std::array<slice, max_kernel_buffers + 1> buffers{}; ///< and the depths of the last layer
+    range triangles;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    slice depth;
+    slice numbers;
+    slice count;
 };
 
 } // namespace detail
@@ -256,6 +275,26 @@ class recorder : private detail::stream {
         detail::draw_call call = draw_call(kernel, buffers, images, geometry, state);
         add_volumes(call.images, volumes);
         draw(call, target);
+    }
+
+    /// Drawn into pictures of our own, and copied to where the layer goes.
+    template <peel_kernel K>
+    requires has_peel_program<K>
+    void peel(const K& kernel, const bindings<device, K>& buffers, range triangles,
+              const peeled_layer<device>& layer) {
+        detail::peel_call call;
+        call.vertex = program<K>::peel_vert;
+        call.push = detail::push_of(kernel);
+        for (std::size_t i = 0; i < buffers.size(); ++i) {
+            call.buffers[i] = bound(buffers[i]);
+        }
+        call.triangles = triangles;
+        call.width = layer.width;
+        call.height = layer.height;
+        call.depth = bound(layer.depth);
+        call.numbers = bound(layer.triangle);
+        call.count = bound(layer.count);
+        peel(call);
     }
 
     void scan(const buffer_view<device>& words, const buffer_view<device>& total) {
@@ -804,6 +843,94 @@ class recorder : private detail::stream {
         const VkViewport viewport{0, height, static_cast<float>(size.width), -height, 0, 1};
         call().set_viewport(commands(), 0, 1, &viewport);
         call().set_scissor(commands(), 0, 1, &info.renderArea);
+    }
+
+    // ---- peel
+
+    void peel(detail::peel_call& what) {
+        const std::uint64_t pixels = std::uint64_t{what.width} * what.height;
+        assert(pixels != 0 && pixels <= ~0u && what.depth.size >= pixels * 4 &&
+               what.numbers.size >= pixels * 4);
+        if (!alive()) {
+            return;
+        }
+        const auto pictures = recording_->layers.take(what.width, what.height);
+        if (!pictures) {
+            return stop(pictures.error());
+        }
+        if (draw_layer(what, **pictures)) {
+            take_layer(what, (*pictures)->fragments);
+        }
+    }
+
+    [[nodiscard]] bool draw_layer(detail::peel_call& what,
+                                  const detail::layer_pictures::pair& pictures) {
+        draw_program program{what.vertex, peel_frag, {}, {}, {}, {}};
+        program.shape.draws = program.shape.peels = true;
+        program.color = pictures.fragments.format();
+        program.depth = pictures.depth.format();
+        auto pipeline = state_->pipelines.draw(program, "skybark: peel");
+        auto layout = state_->pipelines.layout(program.shape);
+        if (!pipeline || !layout) {
+            stop(!pipeline ? pipeline.error() : layout.error());
+            return false;
+        }
+        what.buffers.back() = what.depth;
+        auto set = fill_set(**layout, what.buffers, {});
+        if (!set) {
+            stop(set.error());
+            return false;
+        }
+        what.push.set_header({what.triangles.first, what.width, 0, 0});
+        barrier();
+        for (const image* one : {&pictures.depth, &pictures.fragments}) {
+            image_barrier(one->handle(), aspect_of(one->description().format),
+                          VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, foreign_access{},
+                          foreign_access{});
+        }
+        begin_layer(what, pictures);
+        bind(VK_PIPELINE_BIND_POINT_GRAPHICS, *pipeline, **layout, *set, what.push);
+        if (what.triangles.count != 0) {
+            call().draw(commands(), 3 * what.triangles.count, 1, 0, 0);
+        }
+        call().end_rendering(commands());
+        return true;
+    }
+
+    void begin_layer(const detail::peel_call& what, const detail::layer_pictures::pair& pictures) {
+        VkRenderingAttachmentInfo fragments = attachment(pictures.fragments, true);
+        fragments.clearValue.color.uint32[0] = ~0u;
+        VkRenderingAttachmentInfo depth = attachment(pictures.depth, true); // cleared to 0
+        depth.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+        auto info = make<VkRenderingInfo>(VK_STRUCTURE_TYPE_RENDERING_INFO);
+        info.renderArea = {{0, 0}, {what.width, what.height}};
+        info.layerCount = 1;
+        info.colorAttachmentCount = 1;
+        info.pColorAttachments = &fragments;
+        info.pDepthAttachment = &depth;
+        call().begin_rendering(commands(), &info);
+        const VkViewport viewport{
+            0, 0, static_cast<float>(what.width), static_cast<float>(what.height), 0, 1};
+        call().set_viewport(commands(), 0, 1, &viewport);
+        call().set_scissor(commands(), 0, 1, &info.renderArea);
+    }
+
+    /// Brings the fragments to where the layer goes, and counts them.
+    void take_layer(const detail::peel_call& what, const image& fragments) {
+        if (!alive()) {
+            return;
+        }
+        barrier();
+        call().fill_buffer(commands(), what.count.buffer, what.count.offset, sizeof(count_record),
+                           0);
+        detail::compute_call pass{peeled_comp, "skybark: peeled", {}, {}, {}};
+        const std::uint32_t pixels = what.width * what.height;
+        add(pass.images, sampled_images, fragments.view(), filter_mode::nearest, wrap_mode::clamp);
+        pass.push.set_header({what.width, pixels, 0, 0});
+        pass.buffers[vertices_binding] = what.depth;
+        pass.buffers[offsets_binding] = what.numbers;
+        pass.buffers[length_binding] = what.count;
+        dispatch(pass, groups_of(pixels, 256));
     }
 
     /// Where the indices start in their buffer. It is bound from its start on: lavapipe's indirect

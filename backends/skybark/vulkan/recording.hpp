@@ -1,7 +1,7 @@
 #pragma once
 // What a recorder works with and a later one uses again: a command buffer with its fence, staging
-// and scratch memory, and descriptor sets. Once a program has recorded its largest frame, none of
-// these grows any more.
+// and scratch memory, pictures to draw layers into, and descriptor sets. Once a program has
+// recorded its largest frame, none of these grows any more.
 
 #include <skybark/vulkan/pipelines.hpp>
 
@@ -148,11 +148,48 @@ class descriptor_sets {
     std::size_t used_ = 0;
 };
 
+/// What layers are drawn into; see shaders/programs/peel.glsl. One pair serves all that fit.
+class layer_pictures {
+  public:
+    explicit layer_pictures(context& c) : context_(&c) {}
+
+    struct pair {
+        image depth;
+        image fragments; ///< of VK_FORMAT_R32G32_UINT
+    };
+
+    /// At least as large. What is in it, and its layout, are undefined.
+    [[nodiscard]] result<const pair*> take(std::uint32_t width, std::uint32_t height) {
+        for (const auto& one : pairs_) {
+            const image_description size = one->depth.description();
+            if (size.width >= width && size.height >= height) {
+                return one.get();
+            }
+        }
+        auto depth =
+            image::create(*context_, {width, height, image_format::depth32f}, VK_FORMAT_D32_SFLOAT);
+        if (!depth) {
+            return failure(depth.error());
+        }
+        auto fragments =
+            image::create(*context_, {width, height, image_format::rgba8}, VK_FORMAT_R32G32_UINT);
+        if (!fragments) {
+            return failure(fragments.error());
+        }
+        pairs_.push_back(std::make_unique<pair>(pair{std::move(*depth), std::move(*fragments)}));
+        return pairs_.back().get();
+    }
+
+  private:
+    context* context_;
+    std::vector<std::unique_ptr<pair>> pairs_;
+};
+
 class recording {
   public:
     explicit recording(context& c)
         : staging(c, memory_kind::upload), readback(c, memory_kind::download),
-          scratch(c, memory_kind::device), context_(&c) {}
+          scratch(c, memory_kind::device), layers(c), context_(&c) {}
     recording(const recording&) = delete;
     recording& operator=(const recording&) = delete;
     ~recording() {
@@ -168,6 +205,7 @@ class recording {
     arena staging;  ///< the host writes, the device reads
     arena readback; ///< the device writes, the host reads
     arena scratch;  ///< the device's own temporaries
+    layer_pictures layers;
 
     [[nodiscard]] VkCommandBuffer commands() const noexcept { return commands_; }
     [[nodiscard]] VkFence fence() const noexcept { return fence_; }

@@ -169,20 +169,14 @@ inline result<image> device::create_image(image_description what) {
                         " x " + std::to_string(what.height) + " pixels; each side must be 1 to " +
                         std::to_string(c.limits.max_image_size) + ".");
     }
-    image::parts parts;
-    parts.foreign.description = what;
-    parts.foreign.format = format_of(what.format);
-    auto done = image::add_image(c, parts);
-    if (done) {
-        done = image::add_view(c, parts);
+    auto made = image::create(c, what, format_of(what.format));
+    if (!made) {
+        return made;
     }
-    image made(c, parts); // gives back what there is
-    if (done) {
-        done = at_once([&](vulkan::recorder& r) {
-            r.image_barrier(made.handle(), aspect_of(what.format), VK_IMAGE_LAYOUT_UNDEFINED,
-                            VK_IMAGE_LAYOUT_GENERAL, foreign_access{}, foreign_access{});
-        });
-    }
+    auto done = at_once([&](vulkan::recorder& r) {
+        r.image_barrier(made->handle(), aspect_of(what.format), VK_IMAGE_LAYOUT_UNDEFINED,
+                        VK_IMAGE_LAYOUT_GENERAL, foreign_access{}, foreign_access{});
+    });
     if (!done) {
         return failure(done.error());
     }

@@ -50,6 +50,7 @@
 #include <skybark/vulkan/programs/probe_image.hpp>
 #include <skybark/vulkan/programs/probe_level.hpp>
 #include <skybark/vulkan/programs/probe_map.hpp>
+#include <skybark/vulkan/programs/probe_peel.hpp>
 #include <skybark/vulkan/programs/probe_rings.hpp>
 #include <skybark/vulkan/programs/probe_slabs.hpp>
 #include <skybark/vulkan/programs/probe_strips.hpp>
