@@ -3,6 +3,7 @@
 // may place a corner up to 1/16 pixel aside, so nothing is expected of centres nearer than 1/8 to
 // an edge, and depths may be off by what 1/16 pixel makes on a triangle's slope.
 
+#include <skybark/conformance/buffers.hpp>
 #include <skybark/conformance/draws.hpp>
 #include <skybark/kernels/probe_peel.hpp>
 
