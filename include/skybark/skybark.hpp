@@ -13,9 +13,13 @@
 #include <skybark/clouds/phase.hpp>
 #include <skybark/core/backend.hpp>
 #include <skybark/core/validated.hpp>
+#include <skybark/gather/bounces.hpp>
 #include <skybark/gather/bundle.hpp>
 #include <skybark/gather/bundle_peeler.hpp>
 #include <skybark/gather/bundle_resolver.hpp>
+#include <skybark/gather/directions.hpp>
+#include <skybark/gather/final_gather.hpp>
+#include <skybark/gather/gathered_state.hpp>
 #include <skybark/gather/scene.hpp>
 #include <skybark/trees/bark_mesh.hpp>
 #include <skybark/trees/bark_texture.hpp>

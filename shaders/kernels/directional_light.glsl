@@ -33,8 +33,9 @@ vec4 light_seen(gather_hit hit, vec3 normal) {
 
 void kernel_map(uint i) {
     vec3 normal = samples[i].normal;
-    vec4 seen = light_seen(hits[i], normal);
-    sums[first + i] = light_sum(before[first + i], seen, cosine_between(normal, direction));
+    float weight = weight_of_sample(samples[i], direction);
+    vec4 seen = weight > 0.0 ? light_seen(hits[i], normal) : vec4(0.0);
+    sums[first + i] = light_sum(before[first + i], seen, weight);
     float side = side_of(normal);
     moments[3u * i] = moment_sum(moments_before[3u * i], seen.x, direction, side);
     moments[3u * i + 1u] = moment_sum(moments_before[3u * i + 1u], seen.y, direction, side);

@@ -32,5 +32,5 @@ vec4 light_seen(gather_hit hit, vec3 normal) {
 void kernel_map(uint i) {
     vec3 normal = samples[i].normal;
     vec4 seen = light_seen(hits[i], normal);
-    sums[first + i] = light_sum(before[first + i], seen, cosine_between(normal, direction));
+    sums[first + i] = light_sum(before[first + i], seen, weight_of_sample(samples[i], direction));
 }

@@ -1,7 +1,7 @@
 // Device side of skybark::kernels::gather_sun.
 #define KERNEL_PARAMETERS vec4 direction; vec4 irradiance;
 #include "../skeletons/parameters.glsl"
-#include "../shared/records.glsl"
+#include "../shared/gathered_light.glsl"
 layout(std430, binding = 0) readonly buffer samples_buffer { gather_sample samples[]; };
 layout(std430, binding = 1) readonly buffer hits_buffer { gather_hit hits[]; };
 layout(std430, binding = 2) readonly buffer before_buffer { vec4 before[]; };
@@ -10,7 +10,8 @@ layout(std430, binding = 3) writeonly buffer direct_buffer { vec4 direct[]; };
 void kernel_map(uint i) {
     vec3 n = samples[i].normal;
     precise float along = (n.x * direction.x + n.y * direction.y) + n.z * direction.z;
-    bool lit = along > 0.0 && hits[i].surface == 0xffffffffu;
+    bool lit = along > 0.0 && weight_of_sample(samples[i], direction) > 0.0 &&
+               hits[i].surface == 0xffffffffu;
     precise vec4 sum = before[i] + irradiance * (lit ? along : 0.0);
     direct[i] = sum;
 }

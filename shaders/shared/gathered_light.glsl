@@ -6,12 +6,16 @@ float luminance_of(vec4 light)
     return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
 }
 
-// The cosine of a direction with a normal, without its sign.
-float cosine_between(vec3 normal, vec4 direction)
+// The cosine of a direction with a sample's normal, without its sign; 0 where either its place or
+// its normal is no number, so that it gathers nothing.
+float weight_of_sample(gather_sample at, vec4 direction)
 {
-    precise float along =
-        (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
-    return abs(along);
+    precise float along = (at.normal.x * direction.x + at.normal.y * direction.y) +
+                          at.normal.z * direction.z;
+    float weight = abs(along);
+    bool usable = weight <= 2.0f && abs(at.position.x) <= 1e30f && abs(at.position.y) <= 1e30f &&
+                  abs(at.position.z) <= 1e30f;
+    return usable ? weight : 0.0f;
 }
 
 vec4 light_sum(vec4 sum, vec4 radiance, float weight)
@@ -37,11 +41,11 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
     const float over_pi = 0.318309886f;
-    float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
+    precise float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
                                                material.transmission.x * behind.x);
-    float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
+    precise float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
                                                material.transmission.y * behind.y);
-    float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
+    precise float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
                                                material.transmission.z * behind.z);
     return vec4(r, g, b, 0.0f);
 }

@@ -30,9 +30,10 @@ struct directional_light {
              std::span<glm::vec4> sums, std::span<const glm::vec4> moments_before,
              std::span<glm::vec4> moments) const {
         const glm::vec3 normal = samples[i].normal;
-        const glm::vec4 seen = light_seen(hits[i], normal, tables, radiance);
-        sums[first + i] =
-            shared::light_sum(before[first + i], seen, shared::cosine_between(normal, direction));
+        const float weight = shared::weight_of_sample(samples[i], direction);
+        const glm::vec4 seen =
+            weight > 0.0f ? light_seen(hits[i], normal, tables, radiance) : glm::vec4(0);
+        sums[first + i] = shared::light_sum(before[first + i], seen, weight);
         const float side = side_of(normal);
         const std::size_t at = 3 * std::size_t{i};
         moments[at] = shared::moment_sum(moments_before[at], seen.x, direction, side);

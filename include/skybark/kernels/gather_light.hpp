@@ -26,8 +26,8 @@ struct gather_light {
              std::span<glm::vec4> sums) const {
         const glm::vec3 normal = samples[i].normal;
         const glm::vec4 seen = light_seen(hits[i], normal, tables, radiance);
-        sums[first + i] =
-            shared::light_sum(before[first + i], seen, shared::cosine_between(normal, direction));
+        sums[first + i] = shared::light_sum(before[first + i], seen,
+                                            shared::weight_of_sample(samples[i], direction));
     }
 
   private:

@@ -20,7 +20,8 @@ struct gather_sun {
              std::span<glm::vec4> direct) const {
         const glm::vec3 n = samples[i].normal;
         const float along = (n.x * direction.x + n.y * direction.y) + n.z * direction.z;
-        const bool lit = along > 0.0f && hits[i].surface == no_surface;
+        const bool lit = along > 0.0f && shared::weight_of_sample(samples[i], direction) > 0.0f &&
+                         hits[i].surface == no_surface;
         direct[i] = before[i] + irradiance * (lit ? along : 0.0f);
     }
 };

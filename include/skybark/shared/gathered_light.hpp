@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 13835c768c73783723b7d9cff2389ea878ae82f25a249e2c2186d2b21f915755
+// sha256 83d6e160fc24609a2b0b5918642edd17d92f1cba71a4afc9319d50612b7a595f
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -14,12 +14,16 @@ inline float luminance_of(vec4 light)
     return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
 }
 
-// The cosine of a direction with a normal, without its sign.
-inline float cosine_between(vec3 normal, vec4 direction)
+// The cosine of a direction with a sample's normal, without its sign; 0 where either its place or
+// its normal is no number, so that it gathers nothing.
+inline float weight_of_sample(gather_sample at, vec4 direction)
 {
-    float along =
-        (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
-    return abs(along);
+    float along = (at.normal.x * direction.x + at.normal.y * direction.y) +
+                          at.normal.z * direction.z;
+    float weight = abs(along);
+    bool usable = weight <= 2.0f && abs(at.position.x) <= 1e30f && abs(at.position.y) <= 1e30f &&
+                  abs(at.position.z) <= 1e30f;
+    return usable ? weight : 0.0f;
 }
 
 inline vec4 light_sum(vec4 sum, vec4 radiance, float weight)

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d2b38fb6eca0466c28a39576bd26a1480b1c838b654bb2c45ddbcb98a730e42c
+// sha256 844c87829a9683c65471bfd46e48340bc4a1304bdc5d7af936245beec0eeb2e4
 #pragma once
 
 #include <skybark/kernels/directional_light.hpp>
@@ -351,11 +351,14 @@ float luminance_of(vec4 light)
 {
     return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
 }
-float cosine_between(vec3 normal, vec4 direction)
+float weight_of_sample(gather_sample at, vec4 direction)
 {
-    precise float along =
-        (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
-    return abs(along);
+    precise float along = (at.normal.x * direction.x + at.normal.y * direction.y) +
+                          at.normal.z * direction.z;
+    float weight = abs(along);
+    bool usable = weight <= 2.0f && abs(at.position.x) <= 1e30f && abs(at.position.y) <= 1e30f &&
+                  abs(at.position.z) <= 1e30f;
+    return usable ? weight : 0.0f;
 }
 vec4 light_sum(vec4 sum, vec4 radiance, float weight)
 {
@@ -376,11 +379,11 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
     const float over_pi = 0.318309886f;
-    float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
+    precise float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
                                                material.transmission.x * behind.x);
-    float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
+    precise float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
                                                material.transmission.y * behind.y);
-    float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
+    precise float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
                                                material.transmission.z * behind.z);
     return vec4(r, g, b, 0.0f);
 }
@@ -410,8 +413,9 @@ vec4 light_seen(gather_hit hit, vec3 normal) {
 }
 void kernel_map(uint i) {
     vec3 normal = samples[i].normal;
-    vec4 seen = light_seen(hits[i], normal);
-    sums[first + i] = light_sum(before[first + i], seen, cosine_between(normal, direction));
+    float weight = weight_of_sample(samples[i], direction);
+    vec4 seen = weight > 0.0 ? light_seen(hits[i], normal) : vec4(0.0);
+    sums[first + i] = light_sum(before[first + i], seen, weight);
     float side = side_of(normal);
     moments[3u * i] = moment_sum(moments_before[3u * i], seen.x, direction, side);
     moments[3u * i + 1u] = moment_sum(moments_before[3u * i + 1u], seen.y, direction, side);
@@ -773,11 +777,14 @@ float luminance_of(vec4 light)
 {
     return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
 }
-float cosine_between(vec3 normal, vec4 direction)
+float weight_of_sample(gather_sample at, vec4 direction)
 {
-    precise float along =
-        (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
-    return abs(along);
+    precise float along = (at.normal.x * direction.x + at.normal.y * direction.y) +
+                          at.normal.z * direction.z;
+    float weight = abs(along);
+    bool usable = weight <= 2.0f && abs(at.position.x) <= 1e30f && abs(at.position.y) <= 1e30f &&
+                  abs(at.position.z) <= 1e30f;
+    return usable ? weight : 0.0f;
 }
 vec4 light_sum(vec4 sum, vec4 radiance, float weight)
 {
@@ -798,11 +805,11 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
     const float over_pi = 0.318309886f;
-    float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
+    precise float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
                                                material.transmission.x * behind.x);
-    float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
+    precise float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
                                                material.transmission.y * behind.y);
-    float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
+    precise float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
                                                material.transmission.z * behind.z);
     return vec4(r, g, b, 0.0f);
 }
@@ -832,8 +839,9 @@ vec4 light_seen(gather_hit hit, vec3 normal) {
 }
 void kernel_map(uint i) {
     vec3 normal = samples[i].normal;
-    vec4 seen = light_seen(hits[i], normal);
-    sums[first + i] = light_sum(before[first + i], seen, cosine_between(normal, direction));
+    float weight = weight_of_sample(samples[i], direction);
+    vec4 seen = weight > 0.0 ? light_seen(hits[i], normal) : vec4(0.0);
+    sums[first + i] = light_sum(before[first + i], seen, weight);
     float side = side_of(normal);
     moments[3u * i] = moment_sum(moments_before[3u * i], seen.x, direction, side);
     moments[3u * i + 1u] = moment_sum(moments_before[3u * i + 1u], seen.y, direction, side);

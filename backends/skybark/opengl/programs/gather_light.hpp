@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 8c274db069322eb7f19c28f18c7092947360f392a03645734798209b0b338bfe
+// sha256 bb1a116687f7e46b6f7d4c24e294d9829587fe8a96066bd443055b931d1e6e3a
 #pragma once
 
 #include <skybark/kernels/gather_light.hpp>
@@ -351,11 +351,14 @@ float luminance_of(vec4 light)
 {
     return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
 }
-float cosine_between(vec3 normal, vec4 direction)
+float weight_of_sample(gather_sample at, vec4 direction)
 {
-    precise float along =
-        (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
-    return abs(along);
+    precise float along = (at.normal.x * direction.x + at.normal.y * direction.y) +
+                          at.normal.z * direction.z;
+    float weight = abs(along);
+    bool usable = weight <= 2.0f && abs(at.position.x) <= 1e30f && abs(at.position.y) <= 1e30f &&
+                  abs(at.position.z) <= 1e30f;
+    return usable ? weight : 0.0f;
 }
 vec4 light_sum(vec4 sum, vec4 radiance, float weight)
 {
@@ -376,11 +379,11 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
     const float over_pi = 0.318309886f;
-    float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
+    precise float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
                                                material.transmission.x * behind.x);
-    float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
+    precise float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
                                                material.transmission.y * behind.y);
-    float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
+    precise float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
                                                material.transmission.z * behind.z);
     return vec4(r, g, b, 0.0f);
 }
@@ -409,7 +412,7 @@ vec4 light_seen(gather_hit hit, vec3 normal) {
 void kernel_map(uint i) {
     vec3 normal = samples[i].normal;
     vec4 seen = light_seen(hits[i], normal);
-    sums[first + i] = light_sum(before[first + i], seen, cosine_between(normal, direction));
+    sums[first + i] = light_sum(before[first + i], seen, weight_of_sample(samples[i], direction));
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
@@ -767,11 +770,14 @@ float luminance_of(vec4 light)
 {
     return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
 }
-float cosine_between(vec3 normal, vec4 direction)
+float weight_of_sample(gather_sample at, vec4 direction)
 {
-    precise float along =
-        (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
-    return abs(along);
+    precise float along = (at.normal.x * direction.x + at.normal.y * direction.y) +
+                          at.normal.z * direction.z;
+    float weight = abs(along);
+    bool usable = weight <= 2.0f && abs(at.position.x) <= 1e30f && abs(at.position.y) <= 1e30f &&
+                  abs(at.position.z) <= 1e30f;
+    return usable ? weight : 0.0f;
 }
 vec4 light_sum(vec4 sum, vec4 radiance, float weight)
 {
@@ -792,11 +798,11 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
     const float over_pi = 0.318309886f;
-    float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
+    precise float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
                                                material.transmission.x * behind.x);
-    float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
+    precise float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
                                                material.transmission.y * behind.y);
-    float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
+    precise float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
                                                material.transmission.z * behind.z);
     return vec4(r, g, b, 0.0f);
 }
@@ -825,7 +831,7 @@ vec4 light_seen(gather_hit hit, vec3 normal) {
 void kernel_map(uint i) {
     vec3 normal = samples[i].normal;
     vec4 seen = light_seen(hits[i], normal);
-    sums[first + i] = light_sum(before[first + i], seen, cosine_between(normal, direction));
+    sums[first + i] = light_sum(before[first + i], seen, weight_of_sample(samples[i], direction));
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
 void main() {

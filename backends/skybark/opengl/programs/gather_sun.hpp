@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f55c9eef4b188062a9d617af502858c61c5e6a9ceab8aee2135a20497d3bf8d5
+// sha256 447a194c8f4c6dc3519ffb8eaa5ce19dbd8cc91d60105dee9b713865e2bb62dd
 #pragma once
 
 #include <skybark/kernels/gather_sun.hpp>
@@ -163,6 +163,46 @@ struct patch_table {
     uint rows;
     uint reserved;
 };
+float luminance_of(vec4 light)
+{
+    return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
+}
+float weight_of_sample(gather_sample at, vec4 direction)
+{
+    precise float along = (at.normal.x * direction.x + at.normal.y * direction.y) +
+                          at.normal.z * direction.z;
+    float weight = abs(along);
+    bool usable = weight <= 2.0f && abs(at.position.x) <= 1e30f && abs(at.position.y) <= 1e30f &&
+                  abs(at.position.z) <= 1e30f;
+    return usable ? weight : 0.0f;
+}
+vec4 light_sum(vec4 sum, vec4 radiance, float weight)
+{
+    precise float r = sum.x + radiance.x * weight;
+    precise float g = sum.y + radiance.y * weight;
+    precise float b = sum.z + radiance.z * weight;
+    precise float w = sum.w + weight;
+    return vec4(r, g, b, w);
+}
+vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
+{
+    precise float mean = sum.x + radiance;
+    precise float x = sum.y + radiance * (side * direction.x);
+    precise float y = sum.z + radiance * (side * direction.y);
+    precise float z = sum.w + radiance * (side * direction.z);
+    return vec4(mean, x, y, z);
+}
+vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
+{
+    const float over_pi = 0.318309886f;
+    precise float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
+                                               material.transmission.x * behind.x);
+    precise float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
+                                               material.transmission.y * behind.y);
+    precise float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
+                                               material.transmission.z * behind.z);
+    return vec4(r, g, b, 0.0f);
+}
 layout(std430, binding = 0) readonly buffer samples_buffer { gather_sample samples[]; };
 layout(std430, binding = 1) readonly buffer hits_buffer { gather_hit hits[]; };
 layout(std430, binding = 2) readonly buffer before_buffer { vec4 before[]; };
@@ -170,7 +210,8 @@ layout(std430, binding = 3) writeonly buffer direct_buffer { vec4 direct[]; };
 void kernel_map(uint i) {
     vec3 n = samples[i].normal;
     precise float along = (n.x * direction.x + n.y * direction.y) + n.z * direction.z;
-    bool lit = along > 0.0 && hits[i].surface == 0xffffffffu;
+    bool lit = along > 0.0 && weight_of_sample(samples[i], direction) > 0.0 &&
+               hits[i].surface == 0xffffffffu;
     precise vec4 sum = before[i] + irradiance * (lit ? along : 0.0);
     direct[i] = sum;
 }
@@ -342,6 +383,46 @@ struct patch_table {
     uint rows;
     uint reserved;
 };
+float luminance_of(vec4 light)
+{
+    return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
+}
+float weight_of_sample(gather_sample at, vec4 direction)
+{
+    precise float along = (at.normal.x * direction.x + at.normal.y * direction.y) +
+                          at.normal.z * direction.z;
+    float weight = abs(along);
+    bool usable = weight <= 2.0f && abs(at.position.x) <= 1e30f && abs(at.position.y) <= 1e30f &&
+                  abs(at.position.z) <= 1e30f;
+    return usable ? weight : 0.0f;
+}
+vec4 light_sum(vec4 sum, vec4 radiance, float weight)
+{
+    precise float r = sum.x + radiance.x * weight;
+    precise float g = sum.y + radiance.y * weight;
+    precise float b = sum.z + radiance.z * weight;
+    precise float w = sum.w + weight;
+    return vec4(r, g, b, w);
+}
+vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
+{
+    precise float mean = sum.x + radiance;
+    precise float x = sum.y + radiance * (side * direction.x);
+    precise float y = sum.z + radiance * (side * direction.y);
+    precise float z = sum.w + radiance * (side * direction.z);
+    return vec4(mean, x, y, z);
+}
+vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
+{
+    const float over_pi = 0.318309886f;
+    precise float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
+                                               material.transmission.x * behind.x);
+    precise float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
+                                               material.transmission.y * behind.y);
+    precise float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
+                                               material.transmission.z * behind.z);
+    return vec4(r, g, b, 0.0f);
+}
 layout(std430, binding = 0) readonly buffer samples_buffer { gather_sample samples[]; };
 layout(std430, binding = 1) readonly buffer hits_buffer { gather_hit hits[]; };
 layout(std430, binding = 2) readonly buffer before_buffer { vec4 before[]; };
@@ -349,7 +430,8 @@ layout(std430, binding = 3) writeonly buffer direct_buffer { vec4 direct[]; };
 void kernel_map(uint i) {
     vec3 n = samples[i].normal;
     precise float along = (n.x * direction.x + n.y * direction.y) + n.z * direction.z;
-    bool lit = along > 0.0 && hits[i].surface == 0xffffffffu;
+    bool lit = along > 0.0 && weight_of_sample(samples[i], direction) > 0.0 &&
+               hits[i].surface == 0xffffffffu;
     precise vec4 sum = before[i] + irradiance * (lit ? along : 0.0);
     direct[i] = sum;
 }

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 28addc0b545c2688b1905156976f96eb7ed35477ec1a21566f188c31f8014587
+// sha256 2a1dfdbb32f21ee6ef084d622056fa19ee13901bc6a99a6edfcd89b57dea4725
 #pragma once
 
 #include <skybark/kernels/gathered_irradiance.hpp>
@@ -167,11 +167,14 @@ float luminance_of(vec4 light)
 {
     return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
 }
-float cosine_between(vec3 normal, vec4 direction)
+float weight_of_sample(gather_sample at, vec4 direction)
 {
-    precise float along =
-        (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
-    return abs(along);
+    precise float along = (at.normal.x * direction.x + at.normal.y * direction.y) +
+                          at.normal.z * direction.z;
+    float weight = abs(along);
+    bool usable = weight <= 2.0f && abs(at.position.x) <= 1e30f && abs(at.position.y) <= 1e30f &&
+                  abs(at.position.z) <= 1e30f;
+    return usable ? weight : 0.0f;
 }
 vec4 light_sum(vec4 sum, vec4 radiance, float weight)
 {
@@ -192,11 +195,11 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
     const float over_pi = 0.318309886f;
-    float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
+    precise float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
                                                material.transmission.x * behind.x);
-    float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
+    precise float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
                                                material.transmission.y * behind.y);
-    float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
+    precise float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
                                                material.transmission.z * behind.z);
     return vec4(r, g, b, 0.0f);
 }
@@ -396,11 +399,14 @@ float luminance_of(vec4 light)
 {
     return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
 }
-float cosine_between(vec3 normal, vec4 direction)
+float weight_of_sample(gather_sample at, vec4 direction)
 {
-    precise float along =
-        (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
-    return abs(along);
+    precise float along = (at.normal.x * direction.x + at.normal.y * direction.y) +
+                          at.normal.z * direction.z;
+    float weight = abs(along);
+    bool usable = weight <= 2.0f && abs(at.position.x) <= 1e30f && abs(at.position.y) <= 1e30f &&
+                  abs(at.position.z) <= 1e30f;
+    return usable ? weight : 0.0f;
 }
 vec4 light_sum(vec4 sum, vec4 radiance, float weight)
 {
@@ -421,11 +427,11 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
     const float over_pi = 0.318309886f;
-    float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
+    precise float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
                                                material.transmission.x * behind.x);
-    float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
+    precise float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
                                                material.transmission.y * behind.y);
-    float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
+    precise float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
                                                material.transmission.z * behind.z);
     return vec4(r, g, b, 0.0f);
 }

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 eb739bbd536a7f58b3c53f073d11e02feeed7b52b1061f57ad9e915cbe205eeb
+// sha256 397e1050619d210842269c668d05c16cddf4f500ed349de1d4c9a5579d32e5a5
 #pragma once
 
 #include <skybark/kernels/surface_light.hpp>
@@ -166,11 +166,14 @@ float luminance_of(vec4 light)
 {
     return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
 }
-float cosine_between(vec3 normal, vec4 direction)
+float weight_of_sample(gather_sample at, vec4 direction)
 {
-    precise float along =
-        (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
-    return abs(along);
+    precise float along = (at.normal.x * direction.x + at.normal.y * direction.y) +
+                          at.normal.z * direction.z;
+    float weight = abs(along);
+    bool usable = weight <= 2.0f && abs(at.position.x) <= 1e30f && abs(at.position.y) <= 1e30f &&
+                  abs(at.position.z) <= 1e30f;
+    return usable ? weight : 0.0f;
 }
 vec4 light_sum(vec4 sum, vec4 radiance, float weight)
 {
@@ -191,11 +194,11 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
     const float over_pi = 0.318309886f;
-    float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
+    precise float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
                                                material.transmission.x * behind.x);
-    float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
+    precise float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
                                                material.transmission.y * behind.y);
-    float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
+    precise float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
                                                material.transmission.z * behind.z);
     return vec4(r, g, b, 0.0f);
 }
@@ -387,11 +390,14 @@ float luminance_of(vec4 light)
 {
     return (0.2126f * light.x + 0.7152f * light.y) + 0.0722f * light.z;
 }
-float cosine_between(vec3 normal, vec4 direction)
+float weight_of_sample(gather_sample at, vec4 direction)
 {
-    precise float along =
-        (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
-    return abs(along);
+    precise float along = (at.normal.x * direction.x + at.normal.y * direction.y) +
+                          at.normal.z * direction.z;
+    float weight = abs(along);
+    bool usable = weight <= 2.0f && abs(at.position.x) <= 1e30f && abs(at.position.y) <= 1e30f &&
+                  abs(at.position.z) <= 1e30f;
+    return usable ? weight : 0.0f;
 }
 vec4 light_sum(vec4 sum, vec4 radiance, float weight)
 {
@@ -412,11 +418,11 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
     const float over_pi = 0.318309886f;
-    float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
+    precise float r = material.emission.x + over_pi * (material.diffuse.x * here.x +
                                                material.transmission.x * behind.x);
-    float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
+    precise float g = material.emission.y + over_pi * (material.diffuse.y * here.y +
                                                material.transmission.y * behind.y);
-    float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
+    precise float b = material.emission.z + over_pi * (material.diffuse.z * here.z +
                                                material.transmission.z * behind.z);
     return vec4(r, g, b, 0.0f);
 }

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 2078ad8247e2b1fbed42ce5c64ce7c87058ce1b65efa5fddd213fa6e905c600d
+// sha256 d102f573cbdbf8c4129d3d40b8cff2d14aedc74a33b4560ac841866ad8c471ee
 #pragma once
 
 #include <skybark/kernels/gathered_irradiance.hpp>
