@@ -3,9 +3,12 @@
 
 #include <scenes/embree_scene.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <span>
+#include <vector>
 #include <xmmintrin.h>
 
 namespace skybark::benchmarks {
@@ -154,38 +157,40 @@ struct tangents {
             {b, sign + normal.y * normal.y * a, -normal.y}};
 }
 
-/// Directions about +Z, as many as their cosine.
+/// (x, y, z) in the frame of which the normal is z.
+[[nodiscard]] inline glm::vec3 about_normal(glm::vec3 normal, float x, float y, float z) {
+    const tangents t = tangents_of(normal);
+    return x * t.right + y * t.up + z * normal;
+}
+
+/// PCG's permutation (O'Neill 2014): random bits of a number's own.
+[[nodiscard]] inline std::uint32_t scrambled(std::uint32_t x) {
+    x = x * 747796405u + 2891336453u;
+    const std::uint32_t word = ((x >> ((x >> 28) + 4)) ^ x) * 277803737u;
+    return (word >> 22) ^ word;
+}
+
+/// Cosine-distributed directions about a normal: picked at random from 65,536 that are evenly
+/// spread.
 class cosine_directions {
   public:
     cosine_directions() : table_(65536) {
-        std::uint32_t state = 5;
-        const auto number = [&] {
-            state = hashed(state);
-            return static_cast<float>(state >> 8) * (1.0f / 16777216.0f);
-        };
-        for (glm::vec3& d : table_) {
-            const float across = number();
-            const float angle = 6.2831853f * number();
+        constexpr float golden_angle = 2.39996323f;
+        for (std::size_t i = 0; i < table_.size(); ++i) {
+            const float across = (static_cast<float>(i) + 0.5f) / 65536;
+            const float angle = golden_angle * static_cast<float>(i);
             const float r = std::sqrt(across);
-            d = {r * std::cos(angle), r * std::sin(angle), std::sqrt(1 - across)};
+            table_[i] = {r * std::cos(angle), r * std::sin(angle), std::sqrt(1 - across)};
         }
     }
 
     /// For point i in the given turn.
     [[nodiscard]] glm::vec3 about(glm::vec3 normal, std::uint32_t i, std::uint32_t turn) const {
-        const glm::vec3 d = table_[hashed(i * 747796405u + turn * 2654435769u) >> 16];
-        const tangents t = tangents_of(normal);
-        return d.x * t.right + d.y * t.up + d.z * normal;
+        const glm::vec3 d = table_[scrambled(i + scrambled(turn)) >> 16];
+        return about_normal(normal, d.x, d.y, d.z);
     }
 
   private:
-    /// PCG's permutation (O'Neill 2014).
-    [[nodiscard]] static std::uint32_t hashed(std::uint32_t x) {
-        x = x * 747796405u + 2891336453u;
-        const std::uint32_t word = ((x >> ((x >> 28) + 4)) ^ x) * 277803737u;
-        return (word >> 22) ^ word;
-    }
-
     std::vector<glm::vec3> table_;
 };
 
