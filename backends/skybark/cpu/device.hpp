@@ -4,6 +4,7 @@
 // number of threads.
 
 #include <skybark/core/backend.hpp>
+#include <skybark/cpu/bundle.hpp>
 #include <skybark/cpu/jobs.hpp>
 #include <skybark/cpu/layers.hpp>
 #include <skybark/cpu/memory.hpp>
@@ -216,6 +217,7 @@ class device {
     layer_scratch layers_;
     sort_scratch sort_;
     peel_scratch peel_;
+    bundle_scratch bundle_;
     std::vector<std::uint64_t> counts_;
 };
 
@@ -330,6 +332,12 @@ class recorder {
                 out_of_memory("peel");
             }
         });
+    }
+
+    void resolve(const ray_bundle& bundle, const bundle_work<device>& work) {
+        if (going() && !resolve_bundle(*device_, device_->bundle_, bundle, work)) {
+            out_of_memory("resolve");
+        }
     }
 
     template <grid_map_kernel K>

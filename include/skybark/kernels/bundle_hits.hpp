@@ -68,6 +68,23 @@ struct bundle_hits {
         hits[i] = best;
     }
 
+    /// Whether the triangle with these alpha_coordinates (from 1; 0: none) has a hole at u, v.
+    [[nodiscard]] static bool is_hole(std::uint32_t number, float u, float v,
+                                      std::span<const std::uint32_t> alpha) {
+        if (number == 0) {
+            return false;
+        }
+        const std::size_t at = std::size_t{12} * (number - 1);
+        const auto value = [&](std::size_t word) { return glm::uintBitsToFloat(alpha[at + word]); };
+        const std::uint32_t size = alpha[at + 7];
+        const std::uint32_t column = shared::alpha_texel(
+            shared::alpha_place(value(0), value(2), value(4), u, v), size & 0xffffu);
+        const std::uint32_t row = shared::alpha_texel(
+            shared::alpha_place(value(1), value(3), value(5), u, v), size >> 16);
+        const std::size_t texel = alpha[at + 6] + std::size_t{row} * (size & 0xffffu) + column;
+        return glm::uintBitsToFloat(alpha[texel]) < value(8);
+    }
+
   private:
     [[nodiscard]] gather_hit nearer(gather_hit best, std::uint32_t k, glm::vec3 origin, float side,
                                     std::span<const glm::vec4> corners,
@@ -96,22 +113,6 @@ struct bundle_hits {
         found.u = met.u;
         found.v = met.v;
         return found;
-    }
-
-    [[nodiscard]] static bool is_hole(std::uint32_t number, float u, float v,
-                                      std::span<const std::uint32_t> alpha) {
-        if (number == 0) {
-            return false;
-        }
-        const std::size_t at = std::size_t{12} * (number - 1);
-        const auto value = [&](std::size_t word) { return glm::uintBitsToFloat(alpha[at + word]); };
-        const std::uint32_t size = alpha[at + 7];
-        const std::uint32_t column = shared::alpha_texel(
-            shared::alpha_place(value(0), value(2), value(4), u, v), size & 0xffffu);
-        const std::uint32_t row = shared::alpha_texel(
-            shared::alpha_place(value(1), value(3), value(5), u, v), size >> 16);
-        const std::size_t texel = alpha[at + 6] + std::size_t{row} * (size & 0xffffu) + column;
-        return glm::uintBitsToFloat(alpha[texel]) < value(8);
     }
 };
 static_assert(sizeof(bundle_hits) == 72);
