@@ -122,6 +122,9 @@ struct draw_call {
     std::uint32_t base_vertex = 0;
 };
 
+struct bundle_lists; // of resolve.hpp
+struct bundle_parameters;
+
 /// A peel, its types forgotten.
 struct peel_call {
     spirv_words vertex;
@@ -321,6 +324,9 @@ class recorder : private detail::stream {
               const counted<device>& pairs, std::uint32_t key_bits) {
         sort_pairs({bound(keys), bound(values)}, bound(pairs.count), pairs.limit, key_bits);
     }
+
+    /// What each sample meets first along a bundle. In resolve.hpp, which vulkan.hpp includes.
+    void resolve(const ray_bundle& bundle, const bundle_work<device>& work);
 
   private:
     friend class device;
@@ -932,6 +938,17 @@ class recorder : private detail::stream {
         pass.buffers[length_binding] = what.count;
         dispatch(pass, groups_of(pixels, 256));
     }
+
+    // ---- resolve
+
+    [[nodiscard]] detail::bundle_lists bundle_memory(const ray_bundle& bundle, std::uint32_t count);
+    [[nodiscard]] std::uint32_t bundle_turns() const;
+    [[nodiscard]] static detail::compute_call
+    bundle_pass(spirv_words words, const char* name, const detail::bundle_parameters& parameters,
+                std::uint32_t elements);
+    void list_triangles(const ray_bundle& bundle, const detail::bundle_lists& lists);
+    void look_samples_up(const ray_bundle& bundle, const detail::bundle_lists& lists,
+                         const slice& samples, const slice& alpha, const slice& hits);
 
     /// Where the indices start in their buffer. It is bound from its start on: lavapipe's indirect
     /// draws forget the offset of an index buffer.

@@ -2,6 +2,7 @@
 // The Vulkan backend in one include, with the programs of the kernels that we ship. A VkDevice to
 // run it on is yours, or headless.hpp's.
 
+#include <skybark/vulkan/resolve.hpp>
 #include <skybark/vulkan/transfers.hpp>
 
 #include <skybark/vulkan/programs/bark.hpp>
