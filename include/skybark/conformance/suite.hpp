@@ -20,6 +20,7 @@
 #include <skybark/conformance/bark.hpp>
 #include <skybark/conformance/branches.hpp>
 #include <skybark/conformance/buffers.hpp>
+#include <skybark/conformance/bundles.hpp>
 #include <skybark/conformance/chains.hpp>
 #include <skybark/conformance/draws.hpp>
 #include <skybark/conformance/grids.hpp>
@@ -110,6 +111,7 @@ template <backend B>
     add_word_scan_cases(all);
     add_sort_cases(all);
     add_grid_cases(all);
+    add_bundle_cases(all);
     return all;
 }
 
