@@ -72,6 +72,17 @@ struct scratch_buffer {
     std::uint64_t bytes = 0;
 };
 
+/// What bundles of rays are resolved with; see resolve.hpp.
+struct resolve_objects {
+    scratch_buffer starts;
+    scratch_buffer ranks;
+    scratch_buffer places;
+    scratch_buffer nearest;
+    scratch_buffer large;
+    gl::handle view = 0;   ///< a buffer texture over `places`: drivers read whole texels faster
+    gl::handle viewed = 0; ///< the buffer that it shows
+};
+
 /// What the patterns share. All of it lives as long as the context's device.
 struct shared_objects {
     gl::handle vertex_array = 0;
@@ -87,6 +98,7 @@ struct shared_objects {
     scratch_buffer sort_counts;
     sum_targets sums;
     layer_target layer;
+    resolve_objects resolve;
     gl::handle written = 0;               ///< a query
     gl::handle generated = 0;             ///< a query
     std::array<gl::handle, 4> samplers{}; ///< 2 · linear + repeat
@@ -156,6 +168,9 @@ class context {
     [[nodiscard]] result<void> size_tiles(const glm::uvec2& size);
     [[nodiscard]] result<void> size_layers(const glm::uvec3& size);
 
+    /// Makes `objects.resolve.view` a texture of what `objects.resolve.places` is now.
+    void view_places();
+
     /// Makes the textures of `objects.layer` exactly so large.
     [[nodiscard]] result<void> size_layer(const glm::uvec2& size);
 
@@ -165,8 +180,9 @@ class context {
 
     gl::functions gl;
     device_limits limits;
-    std::uint32_t max_layers = 0;       ///< of a framebuffer
-    std::uint64_t max_target_bytes = 0; ///< as described
+    std::uint32_t max_layers = 0;        ///< of a framebuffer
+    std::uint32_t max_buffer_texels = 0; ///< of a buffer texture
+    std::uint64_t max_target_bytes = 0;  ///< as described
     device_traffic traffic;
     shared_objects objects;
     std::string renderer;
@@ -308,6 +324,7 @@ inline result<void> context::require_limits() {
         route_bit(accumulate_route::direct) | route_bit(accumulate_route::tiles_copied) |
         route_bit(accumulate_route::tiles_drawn) | route_bit(accumulate_route::layers);
     max_target_bytes = description_.max_target_bytes;
+    max_buffer_texels = static_cast<std::uint32_t>(integer(gl::max_texture_buffer_size));
     max_layers = static_cast<std::uint32_t>(integer(gl::max_framebuffer_layers));
     parameter_stride_ = static_cast<std::uint32_t>(
         std::max(int{parameter_bytes}, integer(gl::uniform_buffer_offset_alignment)));
@@ -329,6 +346,7 @@ inline void context::create_objects() {
     gl.create_framebuffers(1, &objects.sums.layers_frame);
     gl.create_framebuffers(1, &objects.sums.layer_frame);
     gl.create_framebuffers(1, &objects.layer.frame);
+    gl.create_textures(gl::texture_target_buffer, 1, &objects.resolve.view);
     gl.create_queries(gl::transform_feedback_primitives_written, 1, &objects.written);
     gl.create_queries(gl::primitives_generated, 1, &objects.generated);
     const auto storage = [this](gl::handle& buffer, std::uint64_t bytes) {
@@ -361,19 +379,27 @@ inline context::~context() {
         gl.delete_program(entry.program);
     }
     const sum_targets& sums = objects.sums;
-    const gl::handle buffers[] = {objects.scratch,         objects.arguments,
-                                  objects.parameters,      objects.ranges.name,
-                                  objects.scan_sums.name,  objects.sort_pairs.name,
-                                  objects.sort_counts.name};
+    const gl::handle buffers[] = {objects.scratch,
+                                  objects.arguments,
+                                  objects.parameters,
+                                  objects.ranges.name,
+                                  objects.scan_sums.name,
+                                  objects.sort_pairs.name,
+                                  objects.sort_counts.name,
+                                  objects.resolve.starts.name,
+                                  objects.resolve.ranks.name,
+                                  objects.resolve.places.name,
+                                  objects.resolve.nearest.name,
+                                  objects.resolve.large.name};
     const gl::handle queries[] = {objects.written, objects.generated};
     const gl::handle framebuffers[] = {objects.nothing,   objects.target,   sums.tiles_frame,
                                        sums.layers_frame, sums.layer_frame, objects.layer.frame};
     const gl::handle textures[] = {sums.tiles, sums.layers, objects.layer.fragments,
-                                   objects.layer.depth};
-    gl.delete_buffers(7, buffers);
+                                   objects.layer.depth, objects.resolve.view};
+    gl.delete_buffers(static_cast<int>(std::size(buffers)), buffers);
     gl.delete_queries(2, queries);
     gl.delete_framebuffers(6, framebuffers);
-    gl.delete_textures(4, textures);
+    gl.delete_textures(static_cast<int>(std::size(textures)), textures);
     gl.delete_samplers(static_cast<int>(objects.samplers.size()), objects.samplers.data());
     gl.delete_transform_feedbacks(1, &objects.feedback);
     gl.delete_vertex_arrays(1, &objects.vertex_array);
@@ -604,6 +630,14 @@ inline result<void> context::size_layers(const glm::uvec3& size) {
               " x " + std::to_string(size.z) + " voxels to accumulate in");
     sums.layers_size = done ? size : glm::uvec3(0);
     return done;
+}
+
+inline void context::view_places() {
+    resolve_objects& resolve = objects.resolve;
+    if (resolve.viewed != resolve.places.name) {
+        gl.texture_buffer(resolve.view, gl::rgba32ui, resolve.places.name);
+        resolve.viewed = resolve.places.name;
+    }
 }
 
 inline result<void> context::size_layer(const glm::uvec2& size) {

@@ -499,6 +499,16 @@ void recorder::peel(const K& kernel, const bindings<device, K>& buffers, range t
     });
 }
 
+inline void recorder::resolve(const ray_bundle& bundle, const bundle_work<device>& work) {
+    assert(work.hits.size / sizeof(gather_hit) >= work.samples.size / sizeof(gather_sample) &&
+           "too few hits for samples");
+    attempt([&] {
+        return detail::resolve(*context_,
+                               {bundle, detail::bound(work.triangles), detail::bound(work.alpha),
+                                detail::bound(work.samples), detail::bound(work.hits)});
+    });
+}
+
 // ---- words --------------------------------------------------------------------------------------
 
 inline void recorder::scan(const buffer_view<device>& words, const buffer_view<device>& total) {

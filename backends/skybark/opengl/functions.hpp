@@ -60,7 +60,8 @@ inline constexpr token vertex_array_binding = 0x85B5, draw_framebuffer = 0x8CA9,
 inline constexpr token texture_2d = 0x0DE1, texture_binding_2d = 0x8069, texture0 = 0x84C0,
     active_texture = 0x84E0, sampler_binding = 0x8919, rgba = 0x1908, rgba8 = 0x8058, rgba32f = 0x8814,
     depth_component = 0x1902, depth_component32f = 0x8CAC, r32ui = 0x8236,
-    rg32ui = 0x823C,
+    rg32ui = 0x823C, rgba32ui = 0x8D70,
+    texture_target_buffer = 0x8C2A, texture_binding_buffer = 0x8C2C, max_texture_buffer_size = 0x8C2B,
     red_integer = 0x8D94, unsigned_byte = 0x1401, unsigned_int = 0x1405, float32 = 0x1406,
     texture_mag_filter = 0x2800, texture_min_filter = 0x2801, texture_wrap_s = 0x2802,
     texture_wrap_t = 0x2803, nearest = 0x2600, linear = 0x2601, repeat = 0x2901,
@@ -187,6 +188,7 @@ using debug_procedure = void(SKYBARK_OPENGL_CALL*)(token source, token type, han
     X(void, clear_named_framebuffer_words, "glClearNamedFramebufferuiv", (handle, token, int, const std::uint32_t*)) \
     X(void, create_textures, "glCreateTextures", (token, int, handle*)) \
     X(void, delete_textures, "glDeleteTextures", (int, const handle*)) \
+    X(void, texture_buffer, "glTextureBuffer", (handle, token, handle)) \
     X(void, texture_storage_2d, "glTextureStorage2D", (handle, int, token, int, int)) \
     X(void, texture_sub_image_2d, "glTextureSubImage2D", (handle, int, int, int, int, int, token, token, const void*)) \
     X(void, texture_storage_3d, "glTextureStorage3D", (handle, int, token, int, int, int)) \

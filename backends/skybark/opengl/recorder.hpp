@@ -11,6 +11,7 @@
 #include <skybark/opengl/patterns.hpp>
 #include <skybark/opengl/peel.hpp>
 #include <skybark/opengl/program.hpp>
+#include <skybark/opengl/resolve.hpp>
 #include <skybark/opengl/volume.hpp>
 #include <skybark/opengl/volume_patterns.hpp>
 #include <skybark/opengl/word_patterns.hpp>
@@ -61,6 +62,9 @@ class recorder {
     template <peel_kernel K>
     void peel(const K& kernel, const bindings<device, K>& buffers, range triangles,
               const peeled_layer<device>& layer);
+
+    /// What each sample meets first along a bundle of rays, or against it. See resolve.hpp.
+    void resolve(const ray_bundle& bundle, const bundle_work<device>& work);
 
     /// Running sums of words in place, the sum of all to the first word of `total`.
     void scan(const buffer_view<device>& words, const buffer_view<device>& total);

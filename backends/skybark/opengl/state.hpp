@@ -298,6 +298,9 @@ struct texture_target {
 inline constexpr texture_target flat_texture{gl::texture_2d, gl::texture_binding_2d};
 inline constexpr texture_target deep_texture{gl::texture_3d, gl::texture_binding_3d};
 
+inline constexpr texture_target buffer_texture{gl::texture_target_buffer,
+                                               gl::texture_binding_buffer};
+
 /// The textures of one kind, and the samplers, of the units [first, first + count).
 class saved_textures {
   public:
