@@ -1,15 +1,18 @@
 // What samples meet along bundles of rays, against Embree's watertight ray tracing.
 
 #include "support/devices.hpp"
-#include "support/embree.hpp"
 
+#include <scenes/embree_reference.hpp>
 #include <scenes/samples.hpp>
 #include <scenes/scenes.hpp>
+#include <skybark/gather/bundle_peeler.hpp>
 #include <skybark/gather/bundle_resolver.hpp>
 
 #include <gtest/gtest.h>
 
 using namespace skybark;
+using scenes::embree_reference;
+using scenes::hit_differences;
 
 namespace {
 
@@ -40,36 +43,14 @@ std::string name_of(const hit_case& c) {
 
 void PrintTo(const hit_case& c, std::ostream* out) { *out << name_of(c); }
 
-/// Counts of rays whose hits differ from Embree's.
-struct differences {
-    std::uint64_t rays = 0;
-    std::uint64_t met = 0; ///< rays that meet something, in both
-    std::uint64_t other_hits = 0;
-    std::uint64_t other_distances = 0;
-
-    void add(const gather_hit& hit, const gather_hit& expected, double tolerance) {
-        ++rays;
-        const bool is_met = hit.surface != no_surface;
-        if (is_met != (expected.surface != no_surface)) {
-            ++other_hits;
-        } else if (is_met) {
-            ++met;
-            const double apart =
-                static_cast<double>(hit.distance) - static_cast<double>(expected.distance);
-            other_distances += std::abs(apart) <= tolerance ? 0u : 1u;
-        }
-    }
-
-    void expect_few() const {
-        const auto all = static_cast<double>(rays);
-        EXPECT_GT(static_cast<double>(met), 0.2 * all);
-        EXPECT_LE(static_cast<double>(other_hits), most_other_hits * all);
-        EXPECT_LE(static_cast<double>(other_distances), most_other_distances * all);
-        testing::Test::RecordProperty("rays", std::to_string(rays));
-        testing::Test::RecordProperty("other_hits", std::to_string(other_hits));
-        testing::Test::RecordProperty("other_distances", std::to_string(other_distances));
-    }
-};
+void expect_few(const hit_differences& all) {
+    EXPECT_GT(all.share(all.met), 0.2);
+    EXPECT_LE(all.share(all.other_hits), most_other_hits);
+    EXPECT_LE(all.share(all.other_distances), most_other_distances);
+    testing::Test::RecordProperty("rays", std::to_string(all.rays));
+    testing::Test::RecordProperty("other_hits", std::to_string(all.other_hits));
+    testing::Test::RecordProperty("other_distances", std::to_string(all.other_distances));
+}
 
 /// A scene and its samples on a device, and what resolves bundles there.
 template <class B>
@@ -115,12 +96,12 @@ template <class B>
 void expect_hits_of_embree(B& device, const hit_case& c) {
     const auto scene = scenes::scene_named(c.scene);
     const auto samples = scenes::morton_order(scenes::sample_surfaces(scene, c.samples));
-    const support::embree_reference reference(scene.triangles);
+    const embree_reference reference(scene.triangles);
     auto resolved = resolved_scene<B>::create(device, scene, samples, c.route);
     ASSERT_TRUE(resolved) << resolved.error().message;
     const gather::bounds& box = resolved->box;
     std::vector<gather_hit> hits(samples.size());
-    differences all;
+    hit_differences all;
     for (std::size_t i = 0; i < c.directions; ++i) {
         const ray_bundle bundle =
             resolved->resolver.bundle(box, directions[i], gather::default_lift(box));
@@ -131,7 +112,7 @@ void expect_hits_of_embree(B& device, const hit_case& c) {
                     distance_tolerance * static_cast<double>(box.diagonal()));
         }
     }
-    all.expect_few();
+    expect_few(all);
 }
 
 class gather_hits : public testing::TestWithParam<hit_case> {};
@@ -158,5 +139,97 @@ INSTANTIATE_TEST_SUITE_P(few, gather_hits, testing::ValuesIn(cases(65536, 16384,
 INSTANTIATE_TEST_SUITE_P(many, gather_hits,
                          testing::ValuesIn(cases(1048576, 262144, std::size(directions))),
                          [](const auto& of) { return name_of(of.param) + "_slow"; });
+
+// ---- The document's layers
+
+/// Share of the rays that meet something where Embree's meet nothing, or the other way round.
+template <class B>
+result<double> peeled_share(B& device, const scenes::gather_scene& scene,
+                            std::span<const gather_sample> samples,
+                            std::span<const gather_hit> expected, const glm::dvec3& direction,
+                            std::uint32_t size) {
+    gather::peeler_options options;
+    options.size = size;
+    auto peeler = gather::bundle_peeler<B>::create(device, options);
+    const auto on_device =
+        resolved_scene<B>::create(device, scene, samples, gather::resolve_route::fastest);
+    if (!peeler || !on_device) {
+        return failure(peeler ? on_device.error() : peeler.error());
+    }
+    const gather::bounds& box = on_device->box;
+    const auto layers = peeler->resolve(
+        peeler->bundle(box, direction, gather::default_lift(box)), box,
+        {view<B>(on_device->triangles), {}, view<B>(on_device->samples), view<B>(on_device->hits)});
+    if (!layers) {
+        return failure(layers.error());
+    }
+    std::vector<gather_hit> hits(samples.size());
+    if (auto done = read_back<B>(device, on_device->hits, std::span(hits)); !done) {
+        return failure(done.error());
+    }
+    hit_differences all;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        all.add(hits[i], expected[i], 1e30);
+    }
+    return all.share(all.other_hits);
+}
+
+struct peel_case {
+    const char* backend;
+    const char* scene;
+    double most; ///< share of wrong hits at 1024 pixels a side
+};
+void PrintTo(const peel_case& c, std::ostream* out) { *out << c.backend << '_' << c.scene; }
+
+/// A pixel's place is off by up to half of it, so that twice as many on a side are wrong half as
+/// often: less than that gains where pixels are as wide as leaves.
+template <class B>
+void expect_errors_of_pixels(B& device, const peel_case& c) {
+    const auto scene = scenes::scene_named(c.scene);
+    const auto samples = scenes::sample_surfaces(scene, 16384);
+    const embree_reference reference(scene.triangles);
+    const gather::bounds box = gather::bounds_of(scene.triangles);
+    const ray_bundle bundle = gather::make_bundle(box, directions[0], 1, gather::default_lift(box));
+    std::vector<gather_hit> expected;
+    for (const gather_sample& s : samples) {
+        expected.push_back(reference.first_hit(bundle, s));
+    }
+    double before = 0;
+    for (const std::uint32_t size : {256u, 512u, 1024u}) {
+        const auto share = peeled_share(device, scene, samples, expected, directions[0], size);
+        ASSERT_TRUE(share) << share.error().message;
+        testing::Test::RecordProperty("wrong_at_" + std::to_string(size), std::to_string(*share));
+        if (before != 0) {
+            EXPECT_LT(*share, 0.75 * before) << size;
+            EXPECT_GT(*share, 0.3 * before) << size;
+        }
+        before = *share;
+    }
+    EXPECT_LT(before, c.most);
+    EXPECT_GT(before, 0.0005);
+}
+
+class peeled_hits : public testing::TestWithParam<peel_case> {};
+
+TEST_P(peeled_hits, are_as_wrong_as_pixels_are_wide) {
+    support::with_device(GetParam().backend,
+                         [](auto& device) { expect_errors_of_pixels(device, GetParam()); });
+}
+
+std::string name_of(const testing::TestParamInfo<peel_case>& of) {
+    return std::string(of.param.backend) + "_" + of.param.scene;
+}
+
+INSTANTIATE_TEST_SUITE_P(few, peeled_hits,
+                         testing::Values(peel_case{"cpu", "cornell", 0.005},
+                                         peel_case{"cpu", "park", 0.03}),
+                         [](const auto& of) { return name_of(of); });
+INSTANTIATE_TEST_SUITE_P(
+    others, peeled_hits,
+    testing::Values(peel_case{"cpu", "canopy", 0.08}, peel_case{"opengl", "cornell", 0.005},
+                    peel_case{"opengl", "park", 0.03}, peel_case{"opengl", "canopy", 0.08},
+                    peel_case{"vulkan", "cornell", 0.005}, peel_case{"vulkan", "park", 0.03},
+                    peel_case{"vulkan", "canopy", 0.08}),
+    [](const auto& of) { return name_of(of) + "_slow"; });
 
 } // namespace

@@ -1,14 +1,18 @@
 #pragma once
-// What a sample meets along a bundle, by Embree's own watertight tests.
+// What samples meet along a bundle, by Embree's own watertight tests, and how much others differ.
 
 #include <scenes/embree_scene.hpp>
 
-namespace skybark::support {
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace skybark::scenes {
 
 class embree_reference {
   public:
     explicit embree_reference(std::span<const gather_triangle> triangles)
-        : scene_(triangles, scenes::embree_build::exact) {}
+        : scene_(triangles, embree_build::exact) {}
 
     /// The ray begins off its surface by the bundle's lift. Fronts count from half a lift behind
     /// that on, backs from half a lift before it on.
@@ -21,7 +25,7 @@ class embree_reference {
         rtcInitIntersectContext(&context.base);
         context.base.filter = leave_out_near_backs;
         context.nearest_back = lift;
-        RTCRayHit ray = scenes::ray_of(origin, direction, 0);
+        RTCRayHit ray = ray_of(origin, direction, 0);
         rtcIntersect1(scene_.get(), &context.base, &ray);
         gather_hit hit;
         if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
@@ -52,7 +56,34 @@ class embree_reference {
         }
     }
 
-    scenes::embree_scene scene_;
+    embree_scene scene_;
 };
 
-} // namespace skybark::support
+/// Counts of rays whose hits differ from Embree's.
+struct hit_differences {
+    std::uint64_t rays = 0;
+    std::uint64_t met = 0; ///< rays that meet something, in both
+    std::uint64_t other_hits = 0;
+    std::uint64_t other_distances = 0;
+
+    /// `tolerance` of distances, m.
+    void add(const gather_hit& hit, const gather_hit& expected, double tolerance) {
+        ++rays;
+        const bool is_met = hit.surface != no_surface;
+        if (is_met != (expected.surface != no_surface)) {
+            ++other_hits;
+        } else if (is_met) {
+            ++met;
+            const double apart =
+                static_cast<double>(hit.distance) - static_cast<double>(expected.distance);
+            other_distances += std::abs(apart) <= tolerance ? 0u : 1u;
+        }
+    }
+
+    /// Of all rays.
+    [[nodiscard]] double share(std::uint64_t count) const {
+        return rays == 0 ? 0 : static_cast<double>(count) / static_cast<double>(rays);
+    }
+};
+
+} // namespace skybark::scenes
