@@ -51,12 +51,14 @@ struct one_lane {
     using band_work = plain::band_work;
     static constexpr auto place_samples = plain::place_samples;
     static constexpr auto band_ranges = plain::band_ranges;
+    static constexpr auto pick = plain::pick;
 };
 #if defined(SKYBARK_HAS_SIXTEEN)
 struct sixteen_lanes {
     using band_work = sixteen::band_work;
     static constexpr auto place_samples = sixteen::place_samples;
     static constexpr auto band_ranges = sixteen::band_ranges;
+    static constexpr auto pick = sixteen::pick;
 };
 #endif
 
@@ -193,19 +195,35 @@ class batch {
             return;
         }
         sort_by_cells(band, sample_pieces, work.samples(), memory);
+        constexpr std::uint32_t at_once = 512;
         constexpr std::uint32_t most = 1024;
-        std::uint32_t numbers[most + 16];
+        std::uint32_t numbers[most + spare];
         std::uint32_t waiting = 0;
-        for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-            numbers[waiting] = t;
-            waiting += ranges_[t].first <= band && band <= ranges_[t].last ? 1 : 0;
-            if (waiting == most) {
+        for (std::uint32_t t = 0; t < triangles_.size(); t += at_once) {
+            const auto count =
+                static_cast<std::uint32_t>(std::min<std::size_t>(at_once, triangles_.size() - t));
+            const std::uint32_t found = Lanes::pick(ranges_, t, count, band, numbers + waiting);
+            for (std::uint32_t i = waiting; i < waiting + found; ++i) {
+                fetch(triangles_[numbers[i]]);
+            }
+            waiting += found;
+            if (waiting > most - at_once) {
                 work.meet(numbers, waiting);
                 waiting = 0;
             }
         }
         work.meet(numbers, waiting);
         work.finish(hits_);
+    }
+
+    /// Says that a triangle will be read soon: a band's triangles may lie far apart.
+    static void fetch(const gather_triangle& triangle) {
+#if defined(__GNUC__)
+        __builtin_prefetch(&triangle.a);
+        __builtin_prefetch(&triangle.reserved);
+#else
+        (void)triangle;
+#endif
     }
 
     /// Sorts a band's samples by their cells.

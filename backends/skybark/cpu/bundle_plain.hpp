@@ -34,6 +34,18 @@ inline void band_ranges(const ray_bundle& bundle, const grid& g, const gather_tr
     }
 }
 
+/// Puts those of triangles [first, first + count) that reach over the band into `numbers`, and says
+/// how many.
+inline std::uint32_t pick(const band_range* ranges, std::uint32_t first, std::uint32_t count,
+                          std::uint32_t band, std::uint32_t* numbers) {
+    std::uint32_t found = 0;
+    for (std::uint32_t i = first; i < first + count; ++i) {
+        numbers[found] = i;
+        found += ranges[i].first <= band && band <= ranges[i].last ? 1 : 0;
+    }
+    return found;
+}
+
 /// One band of samples.
 class band_work {
   public:

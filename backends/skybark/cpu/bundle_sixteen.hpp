@@ -226,6 +226,27 @@ struct frame {
     }
 }
 
+/// Puts those of triangles [first, first + count) that reach over the band into `numbers`, which
+/// has room for sixteen more, and says how many.
+[[gnu::target("avx512f,popcnt")]] inline std::uint32_t pick(const band_range* ranges,
+                                                            std::uint32_t first,
+                                                            std::uint32_t count, std::uint32_t band,
+                                                            std::uint32_t* numbers) {
+    const i16 low_half = _mm512_set1_epi32(0xffff);
+    const i16 wanted = all(band);
+    std::uint32_t found = 0;
+    for (std::uint32_t i = 0; i < count; i += lanes) {
+        const i16 range = _mm512_loadu_si512(ranges + first + i);
+        mask in = _mm512_mask_cmple_epu32_mask(first_lanes(count - i),
+                                               _mm512_and_si512(range, low_half), wanted);
+        in = _mm512_mask_cmple_epu32_mask(in, wanted, _mm512_srli_epi32(range, 16));
+        const i16 number = _mm512_add_epi32(ascending(), all(first + i));
+        _mm512_storeu_si512(numbers + found, _mm512_maskz_compress_epi32(in, number));
+        found += static_cast<std::uint32_t>(__builtin_popcount(in));
+    }
+    return found;
+}
+
 /// One band of samples.
 class band_work {
   public:
