@@ -51,7 +51,8 @@ class vdb : public testing::Test {
     void SetUp() override { openvdb::initialize(); }
 
     /// The files are made here, in the process that the reader forks. A worker of OpenVDB's that is
-    /// inside of a lock at that time is gone in the child, and the lock is never opened: no workers.
+    /// inside of a lock at that time is gone in the child, and the lock is never opened: no
+    /// workers.
     tbb::global_control no_workers{tbb::global_control::max_allowed_parallelism, 1};
 
     static openvdb::FloatGrid::Ptr fog(const std::string& name) {
