@@ -77,6 +77,13 @@ enum class fault {
     keeps_peeled_depths,
     peels_first_triangles,
     counts_all_pixels,
+    loses_rays_against,
+    fuses_edges,
+    drops_last_triangle,
+    prefers_later_triangles,
+    ignores_holes,
+    ignores_lift,
+    swaps_sides,
 };
 
 /// A kernel whose picture stands on its head.
@@ -203,6 +210,38 @@ struct wider_slabs : K {
         return slab;
     }
 };
+
+/// What a sample meets where products and sums of edge functions round once and not twice, so that
+/// an edge is not the same line in both of its triangles.
+[[nodiscard]] gather_hit fused_hit(const ray_bundle& bundle, const gather_sample& sample,
+                                   std::span<const gather_triangle> triangles) {
+    const glm::vec3 from = shared::across_bundle(bundle, shared::ray_origin(bundle, sample));
+    const float side = shared::side_of_bundle(bundle, sample.normal);
+    gather_hit best;
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+        std::array<glm::vec3, 3> p{shared::across_bundle(bundle, triangles[t].a),
+                                   shared::across_bundle(bundle, triangles[t].b),
+                                   shared::across_bundle(bundle, triangles[t].c)};
+        std::array<float, 3> e{};
+        float area = 0;
+        float depth = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::vec3 a = p[(k + 1) % 3] - from;
+            const glm::vec3 b = p[(k + 2) % 3] - from;
+            e[k] = std::fma(a.x, b.y, -(a.y * b.x));
+            area += e[k];
+            depth += e[k] * p[k].z;
+        }
+        const auto [low, high] = std::minmax({e[0], e[1], e[2]});
+        const shared::bundle_meeting met{low >= 0 || high <= 0 ? area : 0, depth / area,
+                                         e[1] / area, e[2] / area};
+        const float distance = shared::distance_along(met, side, from.z, bundle.right.w);
+        if (distance >= 0 && distance < best.distance) {
+            best = {distance, 2 * t + (side * area < 0 ? 0 : 1), met.u, met.v};
+        }
+    }
+    return best;
+}
 
 class mutant_recorder;
 
@@ -542,6 +581,48 @@ class mutant_recorder {
             }
         } else if (which_ == fault::counts_all_pixels) {
             words_of<std::uint32_t>(layer.count)[1] = layer.width * layer.height;
+        }
+    }
+
+    void resolve(ray_bundle bundle, const bundle_work<mutant>& work) {
+        bundle_work<own::device> to{convert(work.triangles), convert(work.alpha),
+                                    convert(work.samples), convert(work.hits)};
+        const auto triangles = words_of<gather_triangle>(work.triangles);
+        const auto samples = words_of<gather_sample>(work.samples);
+        const auto hits = words_of<gather_hit>(work.hits);
+        if (which_ == fault::drops_last_triangle && !triangles.empty()) {
+            to.triangles.size -= sizeof(gather_triangle);
+        } else if (which_ == fault::ignores_lift) {
+            bundle.right.w = 0;
+        }
+        std::vector<gather_triangle> changed(triangles.begin(), triangles.end());
+        if (which_ == fault::ignores_holes) {
+            for (gather_triangle& t : changed) {
+                t.alpha = 0;
+            }
+        } else if (which_ == fault::prefers_later_triangles) {
+            std::reverse(changed.begin(), changed.end());
+        }
+        const own::bytes other(triangles.size_bytes());
+        if (!changed.empty()) {
+            std::memcpy(other.data(), changed.data(), triangles.size_bytes());
+        }
+        if (which_ == fault::ignores_holes || which_ == fault::prefers_later_triangles) {
+            to.triangles = {&other, 0, triangles.size_bytes()};
+        }
+        inner_.resolve(bundle, to);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            if (which_ == fault::fuses_edges) {
+                hits[i] = fused_hit(bundle, samples[i], triangles);
+            } else if (which_ == fault::loses_rays_against &&
+                       shared::side_of_bundle(bundle, samples[i].normal) < 0) {
+                hits[i] = gather_hit{};
+            } else if (which_ == fault::swaps_sides && hits[i].surface != no_surface) {
+                hits[i].surface ^= 1;
+            } else if (which_ == fault::prefers_later_triangles && hits[i].surface != no_surface) {
+                const auto last = static_cast<std::uint32_t>(2 * triangles.size() - 2);
+                hits[i].surface = last - (hits[i].surface & ~1u) + (hits[i].surface & 1);
+            }
         }
     }
 
@@ -928,6 +1009,30 @@ const mutation all_mutations[] = {
     {fault::keeps_peeled_depths, "keeps_peeled_depths", {"peel.nothing", "peel.one"}},
     {fault::peels_first_triangles, "peels_first_triangles", {"peel.part"}},
     {fault::counts_all_pixels, "counts_all_pixels", {"peel.nothing", "peel.one"}},
+    {fault::loses_rays_against,
+     "loses_rays_against",
+     {"resolve.fused_planes", "resolve.fused_random", "resolve.same_random"}},
+    {fault::fuses_edges, "fuses_edges", {"resolve.fused_watertight", "resolve.same_random"}},
+    {fault::drops_last_triangle,
+     "drops_last_triangle",
+     {"resolve.fused_sizes", "resolve.fused_shared_edges", "resolve.same_random"}},
+    {fault::prefers_later_triangles,
+     "prefers_later_triangles",
+     {"resolve.fused_duplicates", "resolve.fused_shared_edges"}},
+    {fault::ignores_holes, "ignores_holes", {"resolve.fused_alpha", "resolve.same_mesh"}},
+    {fault::ignores_lift,
+     "ignores_lift",
+     {"resolve.fused_own_surface", "resolve.fused_box_corners", "resolve.same_mesh"}},
+    {fault::swaps_sides,
+     "swaps_sides",
+     {"resolve.fused_planes", "resolve.fused_random", "resolve.fused_in_views"}},
+    {fault::ignores_top_key_bit,
+     "composes_of_a_sort_without_the_top_bit",
+     {"resolve.composed_any_grid", "resolve.same_random"}},
+    {fault::sorts_downwards, "composes_of_a_sort_downwards", {"resolve.composed_random"}},
+    {fault::words_count_themselves,
+     "composes_of_sums_with_themselves",
+     {"resolve.composed_random", "resolve.composed_sizes"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(suite, mutations, testing::ValuesIn(all_mutations),

@@ -415,13 +415,27 @@ void resolve_random(context<B>& c, resolve_route route, std::uint32_t triangles,
     }
 }
 
-/// So many triangles, in a fan above the samples that it spares none of, or none.
+/// So many triangles side by side, and as many samples, the first of them below the last triangle.
 template <backend B>
 void resolve_sizes(context<B>& c, resolve_route route) {
     for (const std::uint32_t triangles : {0u, 1u, 2u, 63u, 64u, 65u, 257u}) {
-        for (const std::uint32_t samples : {0u, 1u, 65u}) {
-            const bundle_scene scene = random_scene(c, triangles, samples);
-            expect_likely_hits(c, scene, resolving<B>(c, scene, route).run(), 80);
+        for (const std::uint32_t samples : {0u, 1u, 64u, 65u, 300u}) {
+            bundle_scene scene;
+            scene.bundle = upright_bundle(16, gather::default_cells(triangles), 0x1p-10f);
+            const auto corner = [](std::uint32_t i) {
+                return glm::vec3(i % 32, i / 32, i % 3) - glm::vec3(16, 16, 0);
+            };
+            for (std::uint32_t i = 0; i < triangles; ++i) {
+                const glm::vec3 p = corner(i);
+                scene.add(p, p + glm::vec3(0.5f, 0, 0), p + glm::vec3(0, 0.5f, 0));
+            }
+            for (std::uint32_t i = 0; i < samples; ++i) { // some of them beyond the first
+                const std::uint32_t above = triangles - 1 - i % (triangles + 3);
+                const glm::vec3 p = corner(above) + glm::vec3(0.125f, 0.125f, 0);
+                const float up = i % 2 == 0 ? 1.0f : -1.0f;
+                scene.ask({p.x, p.y, -5 * up}, {0, 0, up});
+            }
+            resolve_exactly(c, scene, route);
         }
     }
 }
