@@ -854,7 +854,7 @@ class recorder : private detail::stream {
     // ---- peel
 
     void peel(detail::peel_call& what) {
-        const std::uint64_t pixels = std::uint64_t{what.width} * what.height;
+        [[maybe_unused]] const std::uint64_t pixels = std::uint64_t{what.width} * what.height;
         assert(pixels != 0 && pixels <= ~0u && what.depth.size >= pixels * 4 &&
                what.numbers.size >= pixels * 4);
         if (!alive()) {
