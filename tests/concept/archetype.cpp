@@ -3,6 +3,7 @@
 
 #include <skybark/kernels/probe_level.hpp>
 #include <skybark/kernels/probe_map.hpp>
+#include <skybark/kernels/probe_peel.hpp>
 #include <skybark/kernels/probe_rings.hpp>
 #include <skybark/kernels/probe_slabs.hpp>
 #include <skybark/kernels/probe_strips.hpp>
@@ -73,6 +74,8 @@ static_assert(!skybark::expands<least, skybark::kernels::probe_strips>);
 static_assert(!skybark::expands_rings<least, skybark::kernels::probe_rings>);
 static_assert(!skybark::draws<least, skybark::kernels::probe_surface>);
 static_assert(!skybark::scans<least> && !skybark::sorts<least>);
+static_assert(!skybark::peels<least, skybark::kernels::probe_peel>);
+static_assert(!skybark::resolves_bundles<least>);
 static_assert(!skybark::volume_backend<least>);
 static_assert(!skybark::accumulates<least, skybark::kernels::probe_slabs>);
 static_assert(!skybark::maps_grids<least, skybark::kernels::probe_volume>);
@@ -147,6 +150,32 @@ struct half_a_sorter : least {
     skybark::result<void> submit(recorder&) { return {}; }
 };
 static_assert(skybark::backend<half_a_sorter> && !skybark::sorts<half_a_sorter>);
+
+/// Layers of one kernel, and bundles.
+struct gatherer : least {
+    using kernel = skybark::kernels::probe_peel;
+    struct recorder : spare_recorder<gatherer> {
+        using spare_recorder::spare_recorder;
+        using bound = skybark::bindings<gatherer, kernel>;
+        void peel(const kernel&, const bound&, skybark::range,
+                  const skybark::peeled_layer<gatherer>&) {
+            ++calls;
+        }
+        void resolve(const skybark::ray_bundle&, const skybark::bundle_work<gatherer>&) { ++calls; }
+        int calls = 0;
+    };
+    using least::least;
+    [[nodiscard]] skybark::result<recorder> begin() { return recorder(0); }
+    skybark::result<void> submit(recorder& done) {
+        submitted += done.calls;
+        return {};
+    }
+    int submitted = 0;
+};
+static_assert(skybark::peels<gatherer, skybark::kernels::probe_peel>);
+static_assert(!skybark::peels<gatherer, skybark::kernels::probe_map>);
+static_assert(skybark::resolves_bundles<gatherer>);
+static_assert(!skybark::draws<gatherer, skybark::kernels::probe_surface>);
 
 /// Volumes, their scan, and nothing that a kernel does to them.
 template <class Recorder>
@@ -255,6 +284,12 @@ static_assert(skybark::maps<skybark::validated<mapper>, skybark::kernels::probe_
 static_assert(!skybark::maps<skybark::validated<mapper>, skybark::kernels::probe_map>);
 static_assert(!skybark::expands<skybark::validated<mapper>, skybark::kernels::probe_strips>);
 static_assert(!skybark::volume_backend<skybark::validated<least>>);
+static_assert(skybark::sorts<skybark::validated<sorter>>);
+static_assert(!skybark::sorts<skybark::validated<half_a_sorter>>);
+static_assert(skybark::peels<skybark::validated<gatherer>, skybark::kernels::probe_peel>);
+static_assert(!skybark::peels<skybark::validated<least>, skybark::kernels::probe_peel>);
+static_assert(skybark::resolves_bundles<skybark::validated<gatherer>>);
+static_assert(!skybark::resolves_bundles<skybark::validated<least>>);
 
 } // namespace elsewhere
 
@@ -281,6 +316,16 @@ TEST(archetype, runs_volumes) {
     });
     EXPECT_TRUE(done);
     EXPECT_EQ(device.submitted, 3);
+}
+
+TEST(archetype, runs_layers_and_bundles) {
+    elsewhere::gatherer device(0);
+    const auto done = skybark::run(device, [](auto& r) {
+        r.peel(skybark::kernels::probe_peel{}, {}, skybark::range{}, {});
+        r.resolve(skybark::ray_bundle{}, {});
+    });
+    EXPECT_TRUE(done);
+    EXPECT_EQ(device.submitted, 2);
 }
 
 TEST(archetype, gives_buffers_by_value) {

@@ -836,8 +836,8 @@ result<void> mutant::submit(mutant_recorder& done) {
 /// Whether a case is worth its time here: large ones find nothing that small ones don't.
 [[nodiscard]] bool is_small(const std::string& name) {
     const std::string_view of_case = std::string_view(name).substr(name.find('.'));
-    for (const char* large :
-         {"groups", "huge", "range_scan", "_scan_", ".scan", "long_chain", "many", "million"}) {
+    for (const char* large : {"groups", "huge", "range_scan", "_scan_", ".scan", "long_chain",
+                              "many", "million", "same_random"}) {
         if (of_case.find(large) != std::string_view::npos) {
             return false;
         }
@@ -1011,11 +1011,11 @@ const mutation all_mutations[] = {
     {fault::counts_all_pixels, "counts_all_pixels", {"peel.nothing", "peel.one"}},
     {fault::loses_rays_against,
      "loses_rays_against",
-     {"resolve.fused_planes", "resolve.fused_random", "resolve.same_random"}},
-    {fault::fuses_edges, "fuses_edges", {"resolve.fused_watertight", "resolve.same_random"}},
+     {"resolve.fused_planes", "resolve.fused_random", "resolve.same_mesh"}},
+    {fault::fuses_edges, "fuses_edges", {"resolve.fused_watertight"}},
     {fault::drops_last_triangle,
      "drops_last_triangle",
-     {"resolve.fused_sizes", "resolve.fused_shared_edges", "resolve.same_random"}},
+     {"resolve.fused_sizes", "resolve.fused_shared_edges"}},
     {fault::prefers_later_triangles,
      "prefers_later_triangles",
      {"resolve.fused_duplicates", "resolve.fused_shared_edges"}},
@@ -1028,7 +1028,7 @@ const mutation all_mutations[] = {
      {"resolve.fused_planes", "resolve.fused_random", "resolve.fused_in_views"}},
     {fault::ignores_top_key_bit,
      "composes_of_a_sort_without_the_top_bit",
-     {"resolve.composed_any_grid", "resolve.same_random"}},
+     {"resolve.composed_any_grid"}},
     {fault::sorts_downwards, "composes_of_a_sort_downwards", {"resolve.composed_random"}},
     {fault::words_count_themselves,
      "composes_of_sums_with_themselves",
