@@ -78,7 +78,7 @@ class batch {
 
     /// False where there is no memory.
     [[nodiscard]] bool resolve() {
-        *grid_ = make_grid(bundle_, samples_, grid_plan{});
+        *grid_ = make_grid(bundle_, samples_, triangles_.size());
         const std::uint32_t sample_pieces = pieces_of(samples_.size(), piece_samples);
         const std::uint32_t triangle_pieces = pieces_of(triangles_.size(), piece_triangles);
         const std::uint32_t workers = device_->workers();

@@ -66,41 +66,49 @@ struct grid {
     }
 };
 
-/// How many cells and bands samples get.
-struct grid_plan {
-    float samples_a_cell = 1;
-    std::uint32_t samples_a_band = 16384;
-    std::uint32_t least_of_band = 2048;
-    std::uint32_t wanted_bands = 16; ///< even where bands have fewer samples
-};
+/// How many bands samples get: so many samples a band that they stay in the caches of a core, and
+/// so many bands that all cores have some.
+inline constexpr std::size_t samples_a_band = 16384;
+inline constexpr std::size_t least_of_band = 2048;
+inline constexpr std::size_t wanted_bands = 32;
 
-/// A grid around these samples: about as wide and high as they reach, and with bands of about as
-/// many samples, as far as some of them tell.
+/// The fewer samples there are for each triangle, the more of them its cells should leave out. By
+/// measurement; any number will do.
+[[nodiscard]] inline float samples_a_cell(std::size_t samples, std::size_t triangles) {
+    const float share = static_cast<float>(samples) / static_cast<float>(triangles + 1);
+    return std::clamp(0.5f * std::pow(share, 0.2f), 0.25f, 4.0f);
+}
+
+/// A grid around samples that look for so many triangles: about as wide and high as they reach, and
+/// with bands of about as many samples, as far as some of them tell.
 [[nodiscard]] inline grid make_grid(const ray_bundle& bundle,
-                                    std::span<const gather_sample> samples, const grid_plan& plan) {
+                                    std::span<const gather_sample> samples, std::size_t triangles) {
     constexpr std::size_t most_seen = 512;
     std::array<float, most_seen> heights;
     const std::size_t seen = std::min(most_seen, samples.size());
-    std::size_t finite = 0;
+    std::size_t near = 0;
     float low_x = 0;
     float high_x = 0;
+    // What is far from the scene meets nothing.
+    const float far = 2.0f * bundle.centre.w;
     for (std::size_t i = 0; i < seen; ++i) {
         const placed_sample at = place(bundle, samples[samples.size() * i / seen], 0);
-        if (std::isfinite(at.x) && std::isfinite(at.y)) {
-            low_x = finite == 0 ? at.x : std::min(low_x, at.x);
-            high_x = finite == 0 ? at.x : std::max(high_x, at.x);
-            heights[finite++] = at.y;
+        if (std::abs(at.x) <= far && std::abs(at.y) <= far) {
+            low_x = near == 0 ? at.x : std::min(low_x, at.x);
+            high_x = near == 0 ? at.x : std::max(high_x, at.x);
+            heights[near++] = at.y;
         }
     }
     grid g;
-    if (finite == 0) {
+    if (near == 0) {
         g.first_row[1] = 1;
         return g;
     }
-    std::sort(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(finite));
+    std::sort(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(near));
     const float width = high_x - low_x;
-    const float height = heights[finite - 1] - heights[0];
-    const float cells = std::max(static_cast<float>(samples.size()) / plan.samples_a_cell, 1.0f);
+    const float height = heights[near - 1] - heights[0];
+    const float cells = std::max(
+        static_cast<float>(samples.size()) / samples_a_cell(samples.size(), triangles), 1.0f);
     // width · scale columns by height · scale rows.
     const float side = std::max({std::sqrt(width) * std::sqrt(height / cells),
                                  std::max(width, height) / static_cast<float>(most_side - 2),
@@ -114,14 +122,13 @@ struct grid_plan {
     };
     g.columns = count(width);
     g.rows = count(height);
-    const std::size_t for_cache = samples.size() / plan.samples_a_band;
-    const std::size_t for_tasks =
-        std::min<std::size_t>(samples.size() / plan.least_of_band, plan.wanted_bands);
+    const std::size_t for_cache = samples.size() / samples_a_band;
+    const std::size_t for_tasks = std::min(samples.size() / least_of_band, wanted_bands);
     const auto wanted = static_cast<std::uint32_t>(
         std::clamp<std::size_t>(std::max(for_cache, for_tasks), 1, most_bands));
     g.bands = 0;
     for (std::uint32_t b = 0; b < wanted; ++b) {
-        const std::uint32_t first = b == 0 ? 0 : g.row(heights[finite * b / wanted]);
+        const std::uint32_t first = b == 0 ? 0 : g.row(heights[near * b / wanted]);
         if (b == 0 || first > g.first_row[g.bands - 1]) {
             g.first_row[g.bands++] = first;
         }
