@@ -671,10 +671,10 @@ void resolve_box_corners(context<B>& c, resolve_route route) {
                 continue;
             }
             check.near(double{hits[i].distance}, out, tolerance);
-            const bool is_met = hits[i].surface != no_surface;
-            const auto wall = static_cast<int>(hits[i].surface / 4);
-            check.near(is_met ? left[wall / 2] : no_distance, out, tolerance);
-            check.same(is_met && (ray[wall / 2] > 0) == (wall % 2 == 1) ? hits[i].surface % 2 : 1,
+            const bool is_wall = hits[i].surface / 2 < scene.triangles.size();
+            const auto wall = static_cast<int>(is_wall ? hits[i].surface / 4 : 0);
+            check.near(is_wall ? left[wall / 2] : no_distance, out, tolerance);
+            check.same(is_wall && (ray[wall / 2] > 0) == (wall % 2 == 1) ? hits[i].surface % 2 : 1,
                        0);
         }
     }
