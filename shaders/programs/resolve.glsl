@@ -1,30 +1,31 @@
-// Bundles of rays, resolved on the device: samples are sorted into a grid across the bundle, and
-// each triangle is tested against those in the cells that its box touches. Few tests, little memory:
-// a sample lies in one cell, however many triangles there are.
+// Bundles of rays, resolved on the device: triangles are put into a hierarchy of grids across the
+// bundle, and each sample is tested against those in its cell of each grid.
 //
-//     resolve_count    how many samples each cell has, and each sample's rank in its cell
+//     resolve_count    each triangle's corners across the bundle; how many there are in each cell
 //     scan             of the counts: where each cell begins
-//     resolve_place    what a test needs of a sample goes to its cell
-//     resolve_small    each triangle with few samples to test tests them; others are put on a list
-//     resolve_large    a triangle of the list has some groups of invocations
-//     resolve_hits     what each sample has met
+//     resolve_fill     triangles go to their cells
+//     resolve_hits     each sample against the triangles of its cells
 //
-// The order of a cell's samples and of the list is by chance; nothing depends on it, as a sample
-// keeps the nearest triangle, and of equally near ones that of the lower number.
+// A grid of the hierarchy has half as many cells on a side as the one before; a triangle is in the
+// finest in which its box touches no more than three cells a side: nine entries at most. The order
+// of a cell's triangles is by chance; nothing depends on it, as a sample keeps the nearest triangle,
+// and of equally near ones that of the lower number.
 //
-// Samples [first_sample, first_sample + samples) are one slice. header.x: the longest run of tests
-// that one invocation of resolve_small makes, w: bit 0: there are holes.
+// Triangles [first_triangle, first_triangle + triangle_count) are one slice. `side`: cells on a side
+// of the finest grid, a power of two; `scale`: its cells in a metre.
 #include "../shared/records.glsl"
-#define KERNEL_PARAMETERS ray_bundle bundle; uint first_sample; uint samples; uint triangle_count; uint side; float scale;
+#define KERNEL_PARAMETERS ray_bundle bundle; uint first_triangle; uint triangle_count; uint side; float scale; uint first; uint last;
 #include "../skeletons/parameters.glsl"
 #include "../shared/bundle.glsl"
-const uint no_triangle = 0xffffffffu;
 
 int grid_cell(float across) {
     precise float place = (across + bundle.centre.w) * scale;
     return cell_within(place, int(side));
 }
 
-uint cell_of_sample(vec3 origin) {
-    return uint(grid_cell(origin.y)) * side + uint(grid_cell(origin.x));
+// The number of a cell of grid `level`, which the cell `at` of the finest is a part of.
+uint cell_number(ivec2 at, uint level) {
+    uint cells = side >> level;
+    uint before = (side * side - cells * cells) / 3u * 4u;
+    return before + uint(at.y >> level) * cells + uint(at.x >> level);
 }

@@ -72,15 +72,16 @@ struct scratch_buffer {
     std::uint64_t bytes = 0;
 };
 
-/// What bundles of rays are resolved with; see resolve.hpp.
+/// What bundles of rays are resolved with; see resolve.hpp. Drivers read whole texels faster than
+/// words, so that two of the buffers are seen as textures as well.
 struct resolve_objects {
     scratch_buffer starts;
-    scratch_buffer ranks;
-    scratch_buffer places;
-    scratch_buffer nearest;
-    scratch_buffer large;
-    gl::handle view = 0;   ///< a buffer texture over `places`: drivers read whole texels faster
-    gl::handle viewed = 0; ///< the buffer that it shows
+    scratch_buffer corners;
+    scratch_buffer entries;
+    gl::handle corner_texels = 0;
+    gl::handle entry_texels = 0;
+    gl::handle shown_corners = 0; ///< the buffers that the textures show
+    gl::handle shown_entries = 0;
 };
 
 /// What the patterns share. All of it lives as long as the context's device.
@@ -168,8 +169,8 @@ class context {
     [[nodiscard]] result<void> size_tiles(const glm::uvec2& size);
     [[nodiscard]] result<void> size_layers(const glm::uvec3& size);
 
-    /// Makes `objects.resolve.view` a texture of what `objects.resolve.places` is now.
-    void view_places();
+    /// Makes the textures of `objects.resolve` show its buffers.
+    void show_resolve_buffers();
 
     /// Makes the textures of `objects.layer` exactly so large.
     [[nodiscard]] result<void> size_layer(const glm::uvec2& size);
@@ -346,7 +347,8 @@ inline void context::create_objects() {
     gl.create_framebuffers(1, &objects.sums.layers_frame);
     gl.create_framebuffers(1, &objects.sums.layer_frame);
     gl.create_framebuffers(1, &objects.layer.frame);
-    gl.create_textures(gl::texture_target_buffer, 1, &objects.resolve.view);
+    gl.create_textures(gl::texture_target_buffer, 1, &objects.resolve.corner_texels);
+    gl.create_textures(gl::texture_target_buffer, 1, &objects.resolve.entry_texels);
     gl.create_queries(gl::transform_feedback_primitives_written, 1, &objects.written);
     gl.create_queries(gl::primitives_generated, 1, &objects.generated);
     const auto storage = [this](gl::handle& buffer, std::uint64_t bytes) {
@@ -387,15 +389,17 @@ inline context::~context() {
                                   objects.sort_pairs.name,
                                   objects.sort_counts.name,
                                   objects.resolve.starts.name,
-                                  objects.resolve.ranks.name,
-                                  objects.resolve.places.name,
-                                  objects.resolve.nearest.name,
-                                  objects.resolve.large.name};
+                                  objects.resolve.corners.name,
+                                  objects.resolve.entries.name};
     const gl::handle queries[] = {objects.written, objects.generated};
     const gl::handle framebuffers[] = {objects.nothing,   objects.target,   sums.tiles_frame,
                                        sums.layers_frame, sums.layer_frame, objects.layer.frame};
-    const gl::handle textures[] = {sums.tiles, sums.layers, objects.layer.fragments,
-                                   objects.layer.depth, objects.resolve.view};
+    const gl::handle textures[] = {sums.tiles,
+                                   sums.layers,
+                                   objects.layer.fragments,
+                                   objects.layer.depth,
+                                   objects.resolve.corner_texels,
+                                   objects.resolve.entry_texels};
     gl.delete_buffers(static_cast<int>(std::size(buffers)), buffers);
     gl.delete_queries(2, queries);
     gl.delete_framebuffers(6, framebuffers);
@@ -632,12 +636,17 @@ inline result<void> context::size_layers(const glm::uvec3& size) {
     return done;
 }
 
-inline void context::view_places() {
+inline void context::show_resolve_buffers() {
+    const auto show = [this](gl::handle texture, gl::token format, gl::handle& shown,
+                             gl::handle buffer) {
+        if (shown != buffer) {
+            gl.texture_buffer(texture, format, buffer);
+            shown = buffer;
+        }
+    };
     resolve_objects& resolve = objects.resolve;
-    if (resolve.viewed != resolve.places.name) {
-        gl.texture_buffer(resolve.view, gl::rgba32ui, resolve.places.name);
-        resolve.viewed = resolve.places.name;
-    }
+    show(resolve.corner_texels, gl::rgba32ui, resolve.shown_corners, resolve.corners.name);
+    show(resolve.entry_texels, gl::r32ui, resolve.shown_entries, resolve.entries.name);
 }
 
 inline result<void> context::size_layer(const glm::uvec2& size) {

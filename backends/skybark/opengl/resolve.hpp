@@ -1,13 +1,13 @@
 #pragma once
-// Bundles of rays in one go: samples are sorted into a grid by counting, and triangles test those
-// that their boxes touch; see shaders/programs/resolve.glsl. What is needed besides is kept by the
-// context, 28 bytes a sample of a slice and 4 a triangle, and grows where it must.
+// Bundles of rays in one go: triangles are put into a hierarchy of grids by counting, in no order,
+// which takes a fraction of the time of a sort, and samples look at few of them; see
+// shaders/programs/resolve.glsl. What is needed besides is kept by the context, at most 84 bytes a
+// triangle of a slice and 4 a cell, and grows where it must.
 
 #include <skybark/opengl/programs/own_resolve_count.hpp>
+#include <skybark/opengl/programs/own_resolve_fill.hpp>
 #include <skybark/opengl/programs/own_resolve_hits.hpp>
-#include <skybark/opengl/programs/own_resolve_large.hpp>
-#include <skybark/opengl/programs/own_resolve_place.hpp>
-#include <skybark/opengl/programs/own_resolve_small.hpp>
+#include <skybark/opengl/programs/own_resolve_holes.hpp>
 #include <skybark/opengl/word_patterns.hpp>
 
 #include <bit>
@@ -24,39 +24,46 @@ struct resolve_call {
     bound_range hits;
 };
 
-/// Samples of a slice: an invocation may look at a 64th of them in one run, and Mesa's software
-/// rasterisers end its loops after 65,535 rounds.
-inline constexpr std::uint32_t most_sliced_samples = 1u << 21;
-inline constexpr std::uint32_t most_grid_cells = 1024; ///< on a side
-/// More tests than this are shared by `large_share` groups.
-inline constexpr std::uint32_t small_tests = 512;
-inline constexpr std::uint32_t large_share = 4;
+inline constexpr std::uint32_t most_sliced_triangles = 1u << 21;
+inline constexpr std::uint32_t most_entries = 9; ///< of a triangle
+inline constexpr std::uint32_t most_grid_cells = 1024;
+/// Triangles that a sample looks at in the first pass, and in each further one: Mesa's software
+/// rasterisers end the loops of up to 16 invocations after 65,535 rounds that any of them makes.
+inline constexpr std::uint32_t first_tests = 3500;
+inline constexpr std::uint32_t further_tests = 30000;
+
+// Bindings of the programs, texture units 0 and 1 besides.
+inline constexpr std::uint32_t resolve_bindings = 0x7ff;
+inline constexpr std::uint32_t corners_unit = 0;
+inline constexpr std::uint32_t entries_unit = 1;
+
+// Of resolve_hits.glsl: flags of the header.
+inline constexpr std::uint32_t counted_flag = 1;
+inline constexpr std::uint32_t unwaiting_flag = 2;
 
 /// The parameters of resolve.glsl.
 struct resolve_parameters {
     ray_bundle bundle;
-    std::uint32_t first_sample = 0;
-    std::uint32_t samples = 0;
+    std::uint32_t first_triangle = 0;
     std::uint32_t triangles = 0;
     std::uint32_t side = 1;
     float scale = 1;
+    std::uint32_t first = 0;
+    std::uint32_t last = 0;
 };
-static_assert(sizeof(resolve_parameters) == 84);
+static_assert(sizeof(resolve_parameters) == 88);
 
 struct resolve_programs {
     gl::handle count = 0;
-    gl::handle place = 0;
-    gl::handle small = 0;
-    gl::handle large = 0;
+    gl::handle fill = 0;
     gl::handle hits = 0;
 };
 
-[[nodiscard]] inline result<resolve_programs> find_resolve_programs(context& c) {
+[[nodiscard]] inline result<resolve_programs> find_resolve_programs(context& c, bool holes) {
     resolve_programs found;
     for (const auto& [text, program] :
-         {std::pair{resolve_count_comp, &found.count}, std::pair{resolve_place_comp, &found.place},
-          std::pair{resolve_small_comp, &found.small}, std::pair{resolve_large_comp, &found.large},
-          std::pair{resolve_hits_comp, &found.hits}}) {
+         {std::pair{resolve_count_comp, &found.count}, std::pair{resolve_fill_comp, &found.fill},
+          std::pair{holes ? resolve_holes_comp : resolve_hits_comp, &found.hits}}) {
         const shader_stage stages[] = {{gl::compute_shader, text}};
         const auto made = c.find_program(stages);
         if (!made) {
@@ -67,45 +74,44 @@ struct resolve_programs {
     return found;
 }
 
-/// About four cells a sample: fewer make boxes meet samples that triangles don't, and more are
-/// empty.
-[[nodiscard]] inline std::uint32_t grid_side(std::uint32_t samples) {
-    const double side = 2 * std::sqrt(static_cast<double>(samples));
-    return static_cast<std::uint32_t>(std::clamp(side, 1.0, double{most_grid_cells}));
+/// Cells on a side of the finest grid, a power of two: about as many in all as triangles.
+[[nodiscard]] inline std::uint32_t grid_side(std::uint32_t triangles) {
+    const double side = std::ceil(std::sqrt(static_cast<double>(triangles)));
+    return std::bit_ceil(
+        static_cast<std::uint32_t>(std::clamp(side, 1.0, double{most_grid_cells})));
 }
 
-/// The scratch buffers' parts that a slice uses.
+/// The parts of scratch buffers that a slice uses.
 struct resolve_scratch {
-    bound_range starts;
-    bound_range ranks;
-    bound_range places;
-    bound_range nearest;
-    bound_range large;
-    bound_range large_count; ///< a count_record; what a scan leaves as its total follows it
-    bound_range total;
+    bound_range starts; ///< words
+    bound_range levels; ///< a word
+    bound_range more;   ///< a count_record
+    bound_range total;  ///< a word
+    bound_range corners;
+    bound_range entries;
 };
 
-[[nodiscard]] inline result<resolve_scratch>
-size_resolve(context& c, std::uint32_t samples, std::uint32_t triangles, std::uint32_t side) {
+[[nodiscard]] inline result<resolve_scratch> size_resolve(context& c, std::uint32_t triangles,
+                                                          std::uint32_t side) {
     resolve_objects& objects = c.objects.resolve;
-    const std::uint64_t cells = std::uint64_t{side} * side + 1;
-    const std::uint64_t counts = aligned(c, 16);
-    const std::uint64_t words = std::uint64_t{samples} * 4;
-    const std::uint64_t listed = std::max<std::uint64_t>(triangles, 1) * 4;
+    const std::uint64_t cells = (4 * std::uint64_t{side} * side - 1) / 3 + 1;
+    const std::uint64_t words = aligned(c, 16);
+    const std::uint64_t corners = std::uint64_t{std::max(triangles, 1u)} * 48;
+    const std::uint64_t entries = std::uint64_t{std::max(triangles, 1u)} * most_entries * 4;
     for (const auto& [buffer, bytes] :
-         {std::pair{&objects.starts, cells * 4}, std::pair{&objects.ranks, words},
-          std::pair{&objects.places, 4 * words}, std::pair{&objects.nearest, 2 * words},
-          std::pair{&objects.large, 2 * counts + listed}}) {
+         {std::pair{&objects.starts, 3 * words + cells * 4}, std::pair{&objects.corners, corners},
+          std::pair{&objects.entries, entries}}) {
         if (auto done = c.grow(*buffer, bytes); !done) {
             return failure(done.error());
         }
     }
-    c.view_places();
-    return resolve_scratch{
-        part_of(objects.starts, 0, cells * 4),      part_of(objects.ranks, 0, words),
-        part_of(objects.places, 0, 4 * words),      part_of(objects.nearest, 0, 2 * words),
-        part_of(objects.large, 2 * counts, listed), part_of(objects.large, 0, 16),
-        part_of(objects.large, counts, 16)};
+    c.show_resolve_buffers();
+    return resolve_scratch{part_of(objects.starts, 3 * words, cells * 4),
+                           part_of(objects.starts, 0, 16),
+                           part_of(objects.starts, words, 16),
+                           part_of(objects.starts, 2 * words, 16),
+                           part_of(objects.corners, 0, corners),
+                           part_of(objects.entries, 0, entries)};
 }
 
 inline void clear_words(context& c, const bound_range& words) {
@@ -120,71 +126,80 @@ inline void bind_storage(context& c,
     }
 }
 
-/// So many groups of 64 as all of these need.
-inline void dispatch_each(context& c, gl::handle program, std::uint32_t elements) {
-    dispatch(c, program, (elements - 1) / 64 + 1);
+inline void bind_texel_buffer(context& c, std::uint32_t unit, gl::handle texture) {
+    c.gl.active_texture(gl::texture0 + unit);
+    c.gl.bind_texture(gl::texture_target_buffer, texture);
 }
 
-/// Triangles test samples.
-[[nodiscard]] inline result<void> test_triangles(context& c, const resolve_programs& programs,
-                                                 const resolve_call& call,
-                                                 const resolve_scratch& scratch,
-                                                 const resolve_parameters& parameters) {
-    const std::uint32_t flags = call.alpha.size != 0 ? 1 : 0;
-    const auto bytes = std::as_bytes(std::span(&parameters, 1));
-    const auto bind_lists = [&] {
-        bind_storage(c, {{1, call.triangles},
-                         {2, call.alpha},
-                         {4, scratch.starts},
-                         {7, scratch.nearest},
-                         {8, scratch.large},
-                         {9, scratch.large_count}});
-    };
-    clear_words(c, scratch.large_count);
-    bind_lists();
-    bind_parameters(c, {small_tests, 0, 0, flags}, bytes);
-    dispatch_each(c, programs.small, parameters.triangles);
-    indirect_call arguments;
-    arguments.most = parameters.triangles;
-    arguments.each = 64 * large_share;
-    if (auto done = write_arguments(c, arguments, scratch.large_count); !done) {
-        return done;
-    }
-    bind_lists();
-    bind_parameters(c, {0, large_share, 0, flags}, bytes);
-    dispatch_indirect(c, programs.large);
-    return {};
+/// A group for every 64.
+[[nodiscard]] inline std::uint32_t groups_of(std::uint32_t elements) {
+    return (elements - 1) / 64 + 1;
 }
 
-/// One slice of the samples.
-[[nodiscard]] inline result<void> resolve_slice(context& c, const resolve_programs& programs,
-                                                const resolve_call& call,
-                                                const resolve_scratch& scratch,
-                                                const resolve_parameters& parameters) {
+/// A slice of the triangles goes into the grids.
+[[nodiscard]] inline result<void> sort_into_grids(context& c, const resolve_programs& programs,
+                                                  const resolve_call& call,
+                                                  const resolve_scratch& scratch,
+                                                  const resolve_parameters& parameters) {
     const auto bytes = std::as_bytes(std::span(&parameters, 1));
     clear_words(c, scratch.starts);
+    clear_words(c, scratch.levels);
+    if (parameters.triangles == 0) {
+        return {};
+    }
     bind_parameters(c, {0, 0, 0, 0}, bytes);
-    bind_storage(c, {{0, call.samples}, {4, scratch.starts}, {5, scratch.ranks}});
-    dispatch_each(c, programs.count, parameters.samples);
+    bind_storage(
+        c, {{1, call.triangles}, {4, scratch.starts}, {5, scratch.levels}, {6, scratch.corners}});
+    dispatch(c, programs.count, groups_of(parameters.triangles));
     if (auto done = scan_blocks(c, scratch.starts, scratch.total); !done) {
         return done;
     }
     bind_parameters(c, {0, 0, 0, 0}, bytes);
-    bind_storage(c, {{6, scratch.places}, {7, scratch.nearest}});
-    dispatch_each(c, programs.place, parameters.samples);
-    if (parameters.triangles != 0) {
-        if (auto done = test_triangles(c, programs, call, scratch, parameters); !done) {
+    bind_storage(c, {{4, scratch.starts}, {7, scratch.entries}});
+    dispatch(c, programs.fill, groups_of(parameters.triangles));
+    return {};
+}
+
+/// Samples look at the slice: at the first triangles of their cells, and those that have more, at
+/// the others.
+[[nodiscard]] inline result<void> look_at_grids(context& c, const resolve_programs& programs,
+                                                const resolve_call& call,
+                                                const resolve_scratch& scratch,
+                                                resolve_parameters parameters,
+                                                std::uint32_t samples) {
+    const auto bytes = std::as_bytes(std::span(&parameters, 1));
+    const auto bind_lists = [&](const bound_range& length) {
+        bind_storage(c, {{0, call.samples},
+                         {2, call.hits},
+                         {3, call.hits},
+                         {4, scratch.starts},
+                         {5, scratch.levels},
+                         {8, scratch.more},
+                         {9, call.alpha},
+                         {length_binding, length}});
+    };
+    clear_words(c, scratch.more);
+    parameters.last = first_tests;
+    bind_parameters(c, {0, samples, parameters.first_triangle != 0 ? 1u : 0u, 0}, bytes);
+    bind_lists({});
+    dispatch(c, programs.hits, groups_of(samples));
+    while (parameters.last < parameters.triangles) {
+        parameters.first = parameters.last;
+        parameters.last += further_tests;
+        indirect_call arguments;
+        arguments.most = samples;
+        if (auto done = write_arguments(c, arguments, scratch.more); !done) {
             return done;
         }
+        bind_parameters(c, {0, samples, 1, counted_flag | unwaiting_flag}, bytes);
+        bind_lists(scratch.more);
+        dispatch_indirect(c, programs.hits);
     }
-    bind_parameters(c, {0, 0, 0, 0}, bytes);
-    bind_storage(c, {{1, call.triangles}, {3, call.hits}, {7, scratch.nearest}});
-    dispatch_each(c, programs.hits, parameters.samples);
     return {};
 }
 
 [[nodiscard]] inline result<void> resolve(context& c, const resolve_call& call) {
-    const auto programs = find_resolve_programs(c);
+    const auto programs = find_resolve_programs(c, call.alpha.size != 0);
     if (!programs) {
         return failure(programs.error());
     }
@@ -195,28 +210,34 @@ inline void dispatch_each(context& c, gl::handle program, std::uint32_t elements
     if (samples == 0) {
         return {};
     }
-    const std::uint32_t slice = std::min({samples, most_sliced_samples, c.max_buffer_texels});
-    resolve_parameters parameters{call.bundle, 0, 0, triangles, grid_side(slice), 1};
+    const std::uint32_t slice =
+        std::min({triangles, most_sliced_triangles, c.max_buffer_texels / most_entries});
+    resolve_parameters parameters;
+    parameters.bundle = call.bundle;
+    parameters.side = grid_side(slice);
     parameters.scale = static_cast<float>(parameters.side) / (2 * call.bundle.centre.w);
-    const auto scratch = size_resolve(c, slice, triangles, parameters.side);
+    const auto scratch = size_resolve(c, slice, parameters.side);
     if (!scratch) {
         return failure(scratch.error());
     }
     const saved_program saved(c.gl);
-    const saved_buffers saved_too(c.gl, 0x7ff);
+    const saved_buffers saved_too(c.gl, resolve_bindings);
     const saved_binding indirect(c.gl, gl::dispatch_indirect_buffer,
                                  gl::dispatch_indirect_buffer_binding);
-    const saved_textures saved_unit(c.gl, buffer_texture, 0, 1);
-    c.gl.active_texture(gl::texture0);
-    c.gl.bind_texture(gl::texture_target_buffer, c.objects.resolve.view);
+    const saved_textures saved_units(c.gl, buffer_texture, corners_unit, 2);
+    bind_texel_buffer(c, corners_unit, c.objects.resolve.corner_texels);
+    bind_texel_buffer(c, entries_unit, c.objects.resolve.entry_texels);
     c.gl.bind_buffer(gl::dispatch_indirect_buffer, c.objects.arguments);
-    for (std::uint32_t first = 0; first < samples; first += slice) {
-        parameters.first_sample = first;
-        parameters.samples = std::min(slice, samples - first);
-        if (auto done = resolve_slice(c, *programs, call, *scratch, parameters); !done) {
+    do {
+        parameters.triangles = std::min(slice, triangles - parameters.first_triangle);
+        if (auto done = sort_into_grids(c, *programs, call, *scratch, parameters); !done) {
             return done;
         }
-    }
+        if (auto done = look_at_grids(c, *programs, call, *scratch, parameters, samples); !done) {
+            return done;
+        }
+        parameters.first_triangle += slice;
+    } while (parameters.first_triangle < triangles);
     return {};
 }
 

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 fb28da9fdb5ed295c8f598abbf99615e835aeaff45a9e911581d7ead61e7bdb7
+// sha256 5106a0ad51a034da86b5b71608e56ba5ab4db5b95ff43638ef021cd43552039a
 #pragma once
 
 #include <cstdint>
@@ -114,7 +114,7 @@ struct patch_table {
     uint rows;
     uint reserved;
 };
-#define KERNEL_PARAMETERS ray_bundle bundle; uint first_sample; uint samples; uint triangle_count; uint side; float scale;
+#define KERNEL_PARAMETERS ray_bundle bundle; uint first_triangle; uint triangle_count; uint side; float scale; uint first; uint last;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -344,23 +344,59 @@ barycentric patch_middle(uint rows, uint number)
     middle.v = (float(j) + third) / float(n);
     return middle;
 }
-const uint no_triangle = 0xffffffffu;
 int grid_cell(float across) {
     precise float place = (across + bundle.centre.w) * scale;
     return cell_within(place, int(side));
 }
-uint cell_of_sample(vec3 origin) {
-    return uint(grid_cell(origin.y)) * side + uint(grid_cell(origin.x));
+uint cell_number(ivec2 at, uint level) {
+    uint cells = side >> level;
+    uint before = (side * side - cells * cells) / 3u * 4u;
+    return before + uint(at.y >> level) * cells + uint(at.x >> level);
 }
-layout(std430, binding = 0) readonly buffer samples_buffer { gather_sample sample_list[]; };
+struct cell_box {
+    ivec2 low; // of the finest grid
+    ivec2 high;
+    uint level;
+};
+cell_box cells_of(vec3 a, vec3 b, vec3 c) {
+    precise float slack = meeting_slack(bundle);
+    precise vec2 low = min(a.xy, min(b.xy, c.xy)) - slack;
+    precise vec2 high = max(a.xy, max(b.xy, c.xy)) + slack;
+    cell_box box;
+    box.low = ivec2(grid_cell(low.x), grid_cell(low.y));
+    box.high = ivec2(grid_cell(high.x), grid_cell(high.y));
+    box.level = 0u;
+    while (any(greaterThan((box.high >> box.level) - (box.low >> box.level), ivec2(2)))) {
+        box.level += 1u;
+    }
+    return box;
+}
+layout(std430, binding = 1) readonly buffer triangles_buffer { gather_triangle triangles[]; };
 layout(std430, binding = 4) buffer counts_buffer { uint counts[]; };
-layout(std430, binding = 5) writeonly buffer ranks_buffer { uint ranks[]; };
+layout(std430, binding = 5) buffer levels_buffer { uint levels[]; };
+layout(std430, binding = 6) writeonly buffer corners_buffer { vec4 corners[]; };
 void main() {
     uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
              gl_LocalInvocationID.x;
-    if (i < samples) {
-        vec3 origin = across_bundle(bundle, ray_origin(bundle, sample_list[first_sample + i]));
-        ranks[i] = atomicAdd(counts[cell_of_sample(origin)], 1u);
+    if (i >= triangle_count) {
+        return;
+    }
+    gather_triangle t = triangles[first_triangle + i];
+    vec3 a = across_bundle(bundle, t.a);
+    vec3 b = across_bundle(bundle, t.b);
+    vec3 c = across_bundle(bundle, t.c);
+    corners[3u * i] = vec4(a.xy, b.xy);
+    corners[3u * i + 1u] = vec4(c.xy, a.z, b.z);
+    corners[3u * i + 2u] = vec4(c.z, uintBitsToFloat(t.alpha), 0.0, 0.0);
+    cell_box box = cells_of(a, b, c);
+    ivec2 step = ivec2(1 << box.level);
+    for (int y = box.low.y >> box.level; y <= box.high.y >> box.level; ++y) {
+        for (int x = box.low.x >> box.level; x <= box.high.x >> box.level; ++x) {
+            atomicAdd(counts[cell_number(ivec2(x, y) * step, box.level) + 1u], 1u);
+        }
+    }
+    if ((levels[0] >> box.level & 1u) == 0u) {
+        atomicOr(levels[0], 1u << box.level);
     }
 }
 )glsl";

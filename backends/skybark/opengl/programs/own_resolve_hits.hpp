@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f3d00b2d721d406013b386ee64a13873450305fb33d2dfc7b88ec55c2677fa44
+// sha256 3349a8789a197c069499ca89e01fc68ecc7ca2fd0a228a45580829f87a82ebdc
 #pragma once
 
 #include <cstdint>
@@ -114,7 +114,7 @@ struct patch_table {
     uint rows;
     uint reserved;
 };
-#define KERNEL_PARAMETERS ray_bundle bundle; uint first_sample; uint samples; uint triangle_count; uint side; float scale;
+#define KERNEL_PARAMETERS ray_bundle bundle; uint first_triangle; uint triangle_count; uint side; float scale; uint first; uint last;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -344,14 +344,29 @@ barycentric patch_middle(uint rows, uint number)
     middle.v = (float(j) + third) / float(n);
     return middle;
 }
-const uint no_triangle = 0xffffffffu;
 int grid_cell(float across) {
     precise float place = (across + bundle.centre.w) * scale;
     return cell_within(place, int(side));
 }
-uint cell_of_sample(vec3 origin) {
-    return uint(grid_cell(origin.y)) * side + uint(grid_cell(origin.x));
+uint cell_number(ivec2 at, uint level) {
+    uint cells = side >> level;
+    uint before = (side * side - cells * cells) / 3u * 4u;
+    return before + uint(at.y >> level) * cells + uint(at.x >> level);
 }
+layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
+uint skybark_elements() {
+    return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
+                                         : skybark_header.y;
+}
+layout(binding = SKYBARK_IMAGE_BINDING) uniform usamplerBuffer corners;
+layout(binding = SKYBARK_IMAGE_BINDING + 1) uniform usamplerBuffer entries;
+layout(std430, binding = 0) readonly buffer samples_buffer { gather_sample sample_list[]; };
+layout(std430, binding = 2) readonly buffer before_buffer { gather_hit before[]; };
+layout(std430, binding = 3) writeonly buffer hits_buffer { gather_hit hits[]; };
+layout(std430, binding = 4) readonly buffer starts_buffer { uint starts[]; };
+layout(std430, binding = 5) readonly buffer levels_buffer { uint levels[]; };
+layout(std430, binding = 8) writeonly buffer more_buffer { uint more[]; };
+#ifdef RESOLVE_HOLES
 uint alpha_texel(float place, uint count)
 {
     float within = place - floor(place);
@@ -363,45 +378,108 @@ float alpha_place(float a, float b, float c, float u, float v)
     precise float place = (a + u * (b - a)) + v * (c - a);
     return place;
 }
-layout(binding = SKYBARK_IMAGE_BINDING) uniform usamplerBuffer places;
-layout(std430, binding = 1) readonly buffer triangles_buffer { gather_triangle triangles[]; };
-struct placed_triangle {
-    vec3 a;
-    vec3 b;
-    vec3 c;
-    uint number;
-    uint alpha;
-};
-placed_triangle place_triangle(uint number) {
-    gather_triangle t = triangles[number];
-    return placed_triangle(across_bundle(bundle, t.a), across_bundle(bundle, t.b),
-                           across_bundle(bundle, t.c), number, t.alpha);
-}
-float side_of_place(uvec4 place) { return (place.w & 1u) != 0u ? -1.0 : 1.0; }
-bundle_meeting meet_place(placed_triangle t, uvec4 place) {
-    return meet_triangle(t.a, t.b, t.c, uintBitsToFloat(place.x), uintBitsToFloat(place.y),
-                         meeting_slack(bundle));
-}
-float distance_of(bundle_meeting met, uvec4 place) {
-    return distance_along(met, side_of_place(place), uintBitsToFloat(place.z), bundle.right.w);
-}
-layout(std430, binding = 3) writeonly buffer hits_buffer { gather_hit hits[]; };
-layout(std430, binding = 7) readonly buffer nearest_buffer { uint nearest[]; };
-gather_hit hit_of(uint number, uvec4 place) {
-    if (number == no_triangle) {
-        return gather_hit(1e30, 0xffffffffu, 0.0, 0.0);
+layout(std430, binding = 9) readonly buffer alpha_buffer { uint alpha[]; };
+float alpha_value(uint word) { return uintBitsToFloat(alpha[word]); }
+bool is_hole(uint number, float u, float v) {
+    if (number == 0u) {
+        return false;
     }
-    bundle_meeting met = meet_place(place_triangle(number), place);
-    uint back = side_of_place(place) * met.facing < 0.0 ? 0u : 1u;
-    return gather_hit(distance_of(met, place), 2u * number + back, met.u, met.v);
+    uint at = 12u * (number - 1u);
+    uint size = alpha[at + 7u];
+    float s = alpha_place(alpha_value(at), alpha_value(at + 2u), alpha_value(at + 4u), u, v);
+    float t = alpha_place(alpha_value(at + 1u), alpha_value(at + 3u), alpha_value(at + 5u), u, v);
+    uint column = alpha_texel(s, size & 0xffffu);
+    uint row = alpha_texel(t, size >> 16);
+    return alpha_value(alpha[at + 6u] + row * (size & 0xffffu) + column) < alpha_value(at + 8u);
+}
+#else
+bool is_hole(uint number, float u, float v) { return false; }
+#endif
+struct flat_triangle {
+    uint number; // within the slice
+    vec4 p;      // a.xy, b.xy
+    vec4 q;      // c.xy, a.z, b.z
+};
+flat_triangle flat_entry(uint k) {
+    uint number = texelFetch(entries, int(k)).x;
+    return flat_triangle(number, uintBitsToFloat(texelFetch(corners, int(3u * number))),
+                         uintBitsToFloat(texelFetch(corners, int(3u * number + 1u))));
+}
+bool passes(flat_triangle t, vec3 origin) {
+    precise float ax = t.p.x - origin.x;
+    precise float ay = t.p.y - origin.y;
+    precise float bx = t.p.z - origin.x;
+    precise float by = t.p.w - origin.y;
+    precise float cx = t.q.x - origin.x;
+    precise float cy = t.q.y - origin.y;
+    precise float e0 = bx * cy - by * cx;
+    precise float e1 = cx * ay - cy * ax;
+    precise float e2 = ax * by - ay * bx;
+    return min(e0, min(e1, e2)) >= 0.0 || max(e0, max(e1, e2)) <= 0.0;
+}
+gather_hit nearer(gather_hit best, flat_triangle t, vec3 origin, float facing) {
+    uvec4 r = texelFetch(corners, int(3u * t.number + 2u));
+    bundle_meeting met = meet_triangle(vec3(t.p.xy, t.q.z), vec3(t.p.zw, t.q.w),
+                                       vec3(t.q.xy, uintBitsToFloat(r.x)), origin.x, origin.y,
+                                       meeting_slack(bundle));
+    float distance = distance_along(met, facing, origin.z, bundle.right.w);
+    uint number = first_triangle + t.number;
+    bool takes = distance >= 0.0 && distance <= best.distance;
+    bool later = distance == best.distance && best.surface != 0xffffffffu &&
+                 number >= best.surface / 2u;
+    if (takes && !later && !is_hole(r.y, met.u, met.v)) {
+        best.distance = distance;
+        best.surface = 2u * number + (facing * met.facing < 0.0 ? 0u : 1u);
+        best.u = met.u;
+        best.v = met.v;
+    }
+    return best;
+}
+gather_hit nearest_of(gather_hit best, uint k, uint end, vec3 origin, float facing) {
+    while (k < end) {
+        flat_triangle t;
+        bool met = false;
+        bool waits = false;
+        while (k < end && !waits) {
+            t = flat_entry(k);
+            met = passes(t, origin);
+            waits = met || (skybark_header.w & 2u) != 0u;
+            k += 1u;
+        }
+        if (met) {
+            best = nearer(best, t, origin, facing);
+        }
+    }
+    return best;
 }
 void main() {
-    uint k = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
+    uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
              gl_LocalInvocationID.x;
-    if (k < samples) {
-        uvec4 place = texelFetch(places, int(k));
-        hits[first_sample + place.w / 2u] = hit_of(nearest[2u * k], place);
+    if (i >= skybark_elements()) {
+        return;
     }
+    gather_hit best = gather_hit(1e30, 0xffffffffu, 0.0, 0.0);
+    if (skybark_header.z != 0u) {
+        best = before[i];
+    }
+    gather_sample at = sample_list[i];
+    vec3 origin = across_bundle(bundle, ray_origin(bundle, at));
+    float facing = side_of_bundle(bundle, at.normal);
+    ivec2 cell = ivec2(grid_cell(origin.x), grid_cell(origin.y));
+    uint seen = 0u;
+    for (uint left = levels[0]; left != 0u; left &= left - 1u) {
+        uint number = cell_number(cell, uint(findLSB(left)));
+        uint begin = starts[number];
+        uint count = starts[number + 1u] - begin;
+        uint skipped = min(max(first, seen) - seen, count);
+        uint wanted = min(max(last, seen) - seen, count);
+        best = nearest_of(best, begin + skipped, begin + wanted, origin, facing);
+        seen += count;
+    }
+    if (seen > last) {
+        more[0] = skybark_header.y;
+    }
+    hits[i] = best;
 }
 )glsl";
 

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 cc7e5cacd7534b959d7953c5c8856700c95888fa8cafde5d0ac8d9789aa739eb
+// sha256 9d00948970b09bca509f21738a6b6fe29d1bacf2d5cf402aabb818723f615314
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace skybark::opengl {
 
-inline constexpr std::string_view resolve_small_comp = R"glsl(#version 450
+inline constexpr std::string_view resolve_fill_comp = R"glsl(#version 450
 #define SKYBARK_OPENGL
 layout(local_size_x = 64) in;
 struct surface_vertex {
@@ -114,7 +114,7 @@ struct patch_table {
     uint rows;
     uint reserved;
 };
-#define KERNEL_PARAMETERS ray_bundle bundle; uint first_sample; uint samples; uint triangle_count; uint side; float scale;
+#define KERNEL_PARAMETERS ray_bundle bundle; uint first_triangle; uint triangle_count; uint side; float scale; uint first; uint last;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -344,143 +344,50 @@ barycentric patch_middle(uint rows, uint number)
     middle.v = (float(j) + third) / float(n);
     return middle;
 }
-const uint no_triangle = 0xffffffffu;
 int grid_cell(float across) {
     precise float place = (across + bundle.centre.w) * scale;
     return cell_within(place, int(side));
 }
-uint cell_of_sample(vec3 origin) {
-    return uint(grid_cell(origin.y)) * side + uint(grid_cell(origin.x));
-}
-uint alpha_texel(float place, uint count)
-{
-    float within = place - floor(place);
-    float texel = within * float(count);
-    return texel > 0.0f ? min(uint(min(texel, 65535.0f)), count - 1u) : 0u;
-}
-float alpha_place(float a, float b, float c, float u, float v)
-{
-    precise float place = (a + u * (b - a)) + v * (c - a);
-    return place;
-}
-layout(binding = SKYBARK_IMAGE_BINDING) uniform usamplerBuffer places;
-layout(std430, binding = 1) readonly buffer triangles_buffer { gather_triangle triangles[]; };
-struct placed_triangle {
-    vec3 a;
-    vec3 b;
-    vec3 c;
-    uint number;
-    uint alpha;
-};
-placed_triangle place_triangle(uint number) {
-    gather_triangle t = triangles[number];
-    return placed_triangle(across_bundle(bundle, t.a), across_bundle(bundle, t.b),
-                           across_bundle(bundle, t.c), number, t.alpha);
-}
-float side_of_place(uvec4 place) { return (place.w & 1u) != 0u ? -1.0 : 1.0; }
-bundle_meeting meet_place(placed_triangle t, uvec4 place) {
-    return meet_triangle(t.a, t.b, t.c, uintBitsToFloat(place.x), uintBitsToFloat(place.y),
-                         meeting_slack(bundle));
-}
-float distance_of(bundle_meeting met, uvec4 place) {
-    return distance_along(met, side_of_place(place), uintBitsToFloat(place.z), bundle.right.w);
-}
-layout(std430, binding = 2) readonly buffer alpha_buffer { uint alpha[]; };
-layout(std430, binding = 4) readonly buffer starts_buffer { uint starts[]; };
-layout(std430, binding = 7) coherent buffer nearest_buffer { uint nearest[]; };
-float alpha_value(uint word) { return uintBitsToFloat(alpha[word]); }
-bool is_hole(uint number, float u, float v) {
-    if (number == 0u || (skybark_header.w & 1u) == 0u) {
-        return false;
-    }
-    uint at = 12u * (number - 1u);
-    uint size = alpha[at + 7u];
-    float s = alpha_place(alpha_value(at), alpha_value(at + 2u), alpha_value(at + 4u), u, v);
-    float t = alpha_place(alpha_value(at + 1u), alpha_value(at + 3u), alpha_value(at + 5u), u, v);
-    uint column = alpha_texel(s, size & 0xffffu);
-    uint row = alpha_texel(t, size >> 16);
-    return alpha_value(alpha[at + 6u] + row * (size & 0xffffu) + column) < alpha_value(at + 8u);
-}
-bool hides(uint other, uvec4 place, float distance, uint number) {
-    if (other == no_triangle) {
-        return false;
-    }
-    float nearer = distance_of(meet_place(place_triangle(other), place), place);
-    return nearer < distance || (nearer == distance && other < number);
-}
-void keep_nearest(uint k, uvec4 place, float distance, uint number) {
-    uint known = nearest[2u * k];
-    bool kept = false;
-    while (!kept && !hides(known, place, distance, number)) {
-        uint found = atomicCompSwap(nearest[2u * k], known, number);
-        kept = found == known;
-        known = found;
-    }
-    if (kept) {
-        nearest[2u * k + 1u] = floatBitsToUint(distance);
-    }
-}
-void test_sample(placed_triangle t, uint k) {
-    uvec4 place = texelFetch(places, int(k));
-    float x = uintBitsToFloat(place.x);
-    float y = uintBitsToFloat(place.y);
-    precise float ax = t.a.x - x;
-    precise float ay = t.a.y - y;
-    precise float bx = t.b.x - x;
-    precise float by = t.b.y - y;
-    precise float cx = t.c.x - x;
-    precise float cy = t.c.y - y;
-    precise float e0 = bx * cy - by * cx;
-    precise float e1 = cx * ay - cy * ax;
-    precise float e2 = ax * by - ay * bx;
-    if (!(min(e0, min(e1, e2)) >= 0.0 || max(e0, max(e1, e2)) <= 0.0)) {
-        return;
-    }
-    bundle_meeting met = meet_place(t, place);
-    float distance = distance_of(met, place);
-    if (distance >= 0.0 && distance <= uintBitsToFloat(nearest[2u * k + 1u]) &&
-        !is_hole(t.alpha, met.u, met.v)) {
-        keep_nearest(k, place, distance, t.number);
-    }
+uint cell_number(ivec2 at, uint level) {
+    uint cells = side >> level;
+    uint before = (side * side - cells * cells) / 3u * 4u;
+    return before + uint(at.y >> level) * cells + uint(at.x >> level);
 }
 struct cell_box {
-    ivec2 low;
+    ivec2 low; // of the finest grid
     ivec2 high;
+    uint level;
 };
-cell_box cells_of(placed_triangle t) {
+cell_box cells_of(vec3 a, vec3 b, vec3 c) {
     precise float slack = meeting_slack(bundle);
-    precise vec2 low = min(t.a.xy, min(t.b.xy, t.c.xy)) - slack;
-    precise vec2 high = max(t.a.xy, max(t.b.xy, t.c.xy)) + slack;
-    return cell_box(ivec2(grid_cell(low.x), grid_cell(low.y)),
-                    ivec2(grid_cell(high.x), grid_cell(high.y)));
+    precise vec2 low = min(a.xy, min(b.xy, c.xy)) - slack;
+    precise vec2 high = max(a.xy, max(b.xy, c.xy)) + slack;
+    cell_box box;
+    box.low = ivec2(grid_cell(low.x), grid_cell(low.y));
+    box.high = ivec2(grid_cell(high.x), grid_cell(high.y));
+    box.level = 0u;
+    while (any(greaterThan((box.high >> box.level) - (box.low >> box.level), ivec2(2)))) {
+        box.level += 1u;
+    }
+    return box;
 }
-uvec2 samples_of_row(cell_box box, int row) {
-    uint base = uint(row) * side;
-    return uvec2(starts[base + uint(box.low.x)], starts[base + uint(box.high.x) + 1u]);
-}
-layout(std430, binding = 8) writeonly buffer large_buffer { uint large[]; };
-layout(std430, binding = 9) buffer large_count_buffer { uint large_count[]; };
+layout(binding = SKYBARK_IMAGE_BINDING) uniform usamplerBuffer corners;
+layout(std430, binding = 4) buffer starts_buffer { uint starts[]; };
+layout(std430, binding = 7) writeonly buffer entries_buffer { uint entries[]; };
 void main() {
     uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
              gl_LocalInvocationID.x;
     if (i >= triangle_count) {
         return;
     }
-    placed_triangle t = place_triangle(i);
-    cell_box box = cells_of(t);
-    uint tests = 0u;
-    for (int row = box.low.y; row <= box.high.y; ++row) {
-        uvec2 run = samples_of_row(box, row);
-        tests += run.y - run.x;
-    }
-    if (tests > skybark_header.x) {
-        large[atomicAdd(large_count[0], 1u)] = i;
-        return;
-    }
-    for (int row = box.low.y; row <= box.high.y; ++row) {
-        uvec2 run = samples_of_row(box, row);
-        for (uint k = run.x; k < run.y; ++k) {
-            test_sample(t, k);
+    vec4 p = uintBitsToFloat(texelFetch(corners, int(3u * i)));
+    vec4 q = uintBitsToFloat(texelFetch(corners, int(3u * i + 1u)));
+    cell_box box = cells_of(vec3(p.xy, 0.0), vec3(p.zw, 0.0), vec3(q.xy, 0.0));
+    ivec2 step = ivec2(1 << box.level);
+    for (int y = box.low.y >> box.level; y <= box.high.y >> box.level; ++y) {
+        for (int x = box.low.x >> box.level; x <= box.high.x >> box.level; ++x) {
+            uint cell = cell_number(ivec2(x, y) * step, box.level);
+            entries[atomicAdd(starts[cell + 1u], 1u)] = i;
         }
     }
 }

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 301a3675ea3dcadf9ed0cf411734a01b0d7c932011be01ca68134f2b5d0a4811
+// sha256 40a41c929e5d4a3449ceb8115596f8f64cf4de9f20b24f3fd03c292977cf6472
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,9 @@
 
 namespace skybark::opengl {
 
-inline constexpr std::string_view resolve_large_comp = R"glsl(#version 450
+inline constexpr std::string_view resolve_holes_comp = R"glsl(#version 450
 #define SKYBARK_OPENGL
+#define RESOLVE_HOLES
 layout(local_size_x = 64) in;
 struct surface_vertex {
     vec3 position;
@@ -114,7 +115,7 @@ struct patch_table {
     uint rows;
     uint reserved;
 };
-#define KERNEL_PARAMETERS ray_bundle bundle; uint first_sample; uint samples; uint triangle_count; uint side; float scale;
+#define KERNEL_PARAMETERS ray_bundle bundle; uint first_triangle; uint triangle_count; uint side; float scale; uint first; uint last;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -344,14 +345,29 @@ barycentric patch_middle(uint rows, uint number)
     middle.v = (float(j) + third) / float(n);
     return middle;
 }
-const uint no_triangle = 0xffffffffu;
 int grid_cell(float across) {
     precise float place = (across + bundle.centre.w) * scale;
     return cell_within(place, int(side));
 }
-uint cell_of_sample(vec3 origin) {
-    return uint(grid_cell(origin.y)) * side + uint(grid_cell(origin.x));
+uint cell_number(ivec2 at, uint level) {
+    uint cells = side >> level;
+    uint before = (side * side - cells * cells) / 3u * 4u;
+    return before + uint(at.y >> level) * cells + uint(at.x >> level);
 }
+layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
+uint skybark_elements() {
+    return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
+                                         : skybark_header.y;
+}
+layout(binding = SKYBARK_IMAGE_BINDING) uniform usamplerBuffer corners;
+layout(binding = SKYBARK_IMAGE_BINDING + 1) uniform usamplerBuffer entries;
+layout(std430, binding = 0) readonly buffer samples_buffer { gather_sample sample_list[]; };
+layout(std430, binding = 2) readonly buffer before_buffer { gather_hit before[]; };
+layout(std430, binding = 3) writeonly buffer hits_buffer { gather_hit hits[]; };
+layout(std430, binding = 4) readonly buffer starts_buffer { uint starts[]; };
+layout(std430, binding = 5) readonly buffer levels_buffer { uint levels[]; };
+layout(std430, binding = 8) writeonly buffer more_buffer { uint more[]; };
+#ifdef RESOLVE_HOLES
 uint alpha_texel(float place, uint count)
 {
     float within = place - floor(place);
@@ -363,34 +379,10 @@ float alpha_place(float a, float b, float c, float u, float v)
     precise float place = (a + u * (b - a)) + v * (c - a);
     return place;
 }
-layout(binding = SKYBARK_IMAGE_BINDING) uniform usamplerBuffer places;
-layout(std430, binding = 1) readonly buffer triangles_buffer { gather_triangle triangles[]; };
-struct placed_triangle {
-    vec3 a;
-    vec3 b;
-    vec3 c;
-    uint number;
-    uint alpha;
-};
-placed_triangle place_triangle(uint number) {
-    gather_triangle t = triangles[number];
-    return placed_triangle(across_bundle(bundle, t.a), across_bundle(bundle, t.b),
-                           across_bundle(bundle, t.c), number, t.alpha);
-}
-float side_of_place(uvec4 place) { return (place.w & 1u) != 0u ? -1.0 : 1.0; }
-bundle_meeting meet_place(placed_triangle t, uvec4 place) {
-    return meet_triangle(t.a, t.b, t.c, uintBitsToFloat(place.x), uintBitsToFloat(place.y),
-                         meeting_slack(bundle));
-}
-float distance_of(bundle_meeting met, uvec4 place) {
-    return distance_along(met, side_of_place(place), uintBitsToFloat(place.z), bundle.right.w);
-}
-layout(std430, binding = 2) readonly buffer alpha_buffer { uint alpha[]; };
-layout(std430, binding = 4) readonly buffer starts_buffer { uint starts[]; };
-layout(std430, binding = 7) coherent buffer nearest_buffer { uint nearest[]; };
+layout(std430, binding = 9) readonly buffer alpha_buffer { uint alpha[]; };
 float alpha_value(uint word) { return uintBitsToFloat(alpha[word]); }
 bool is_hole(uint number, float u, float v) {
-    if (number == 0u || (skybark_header.w & 1u) == 0u) {
+    if (number == 0u) {
         return false;
     }
     uint at = 12u * (number - 1u);
@@ -401,79 +393,94 @@ bool is_hole(uint number, float u, float v) {
     uint row = alpha_texel(t, size >> 16);
     return alpha_value(alpha[at + 6u] + row * (size & 0xffffu) + column) < alpha_value(at + 8u);
 }
-bool hides(uint other, uvec4 place, float distance, uint number) {
-    if (other == no_triangle) {
-        return false;
-    }
-    float nearer = distance_of(meet_place(place_triangle(other), place), place);
-    return nearer < distance || (nearer == distance && other < number);
+#else
+bool is_hole(uint number, float u, float v) { return false; }
+#endif
+struct flat_triangle {
+    uint number; // within the slice
+    vec4 p;      // a.xy, b.xy
+    vec4 q;      // c.xy, a.z, b.z
+};
+flat_triangle flat_entry(uint k) {
+    uint number = texelFetch(entries, int(k)).x;
+    return flat_triangle(number, uintBitsToFloat(texelFetch(corners, int(3u * number))),
+                         uintBitsToFloat(texelFetch(corners, int(3u * number + 1u))));
 }
-void keep_nearest(uint k, uvec4 place, float distance, uint number) {
-    uint known = nearest[2u * k];
-    bool kept = false;
-    while (!kept && !hides(known, place, distance, number)) {
-        uint found = atomicCompSwap(nearest[2u * k], known, number);
-        kept = found == known;
-        known = found;
-    }
-    if (kept) {
-        nearest[2u * k + 1u] = floatBitsToUint(distance);
-    }
-}
-void test_sample(placed_triangle t, uint k) {
-    uvec4 place = texelFetch(places, int(k));
-    float x = uintBitsToFloat(place.x);
-    float y = uintBitsToFloat(place.y);
-    precise float ax = t.a.x - x;
-    precise float ay = t.a.y - y;
-    precise float bx = t.b.x - x;
-    precise float by = t.b.y - y;
-    precise float cx = t.c.x - x;
-    precise float cy = t.c.y - y;
+bool passes(flat_triangle t, vec3 origin) {
+    precise float ax = t.p.x - origin.x;
+    precise float ay = t.p.y - origin.y;
+    precise float bx = t.p.z - origin.x;
+    precise float by = t.p.w - origin.y;
+    precise float cx = t.q.x - origin.x;
+    precise float cy = t.q.y - origin.y;
     precise float e0 = bx * cy - by * cx;
     precise float e1 = cx * ay - cy * ax;
     precise float e2 = ax * by - ay * bx;
-    if (!(min(e0, min(e1, e2)) >= 0.0 || max(e0, max(e1, e2)) <= 0.0)) {
-        return;
-    }
-    bundle_meeting met = meet_place(t, place);
-    float distance = distance_of(met, place);
-    if (distance >= 0.0 && distance <= uintBitsToFloat(nearest[2u * k + 1u]) &&
-        !is_hole(t.alpha, met.u, met.v)) {
-        keep_nearest(k, place, distance, t.number);
-    }
+    return min(e0, min(e1, e2)) >= 0.0 || max(e0, max(e1, e2)) <= 0.0;
 }
-struct cell_box {
-    ivec2 low;
-    ivec2 high;
-};
-cell_box cells_of(placed_triangle t) {
-    precise float slack = meeting_slack(bundle);
-    precise vec2 low = min(t.a.xy, min(t.b.xy, t.c.xy)) - slack;
-    precise vec2 high = max(t.a.xy, max(t.b.xy, t.c.xy)) + slack;
-    return cell_box(ivec2(grid_cell(low.x), grid_cell(low.y)),
-                    ivec2(grid_cell(high.x), grid_cell(high.y)));
-}
-uvec2 samples_of_row(cell_box box, int row) {
-    uint base = uint(row) * side;
-    return uvec2(starts[base + uint(box.low.x)], starts[base + uint(box.high.x) + 1u]);
-}
-layout(std430, binding = 8) readonly buffer large_buffer { uint large[]; };
-layout(std430, binding = 9) readonly buffer large_count_buffer { uint large_count[]; };
-void main() {
-    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    uint share = skybark_header.y;
-    if (group / share >= large_count[0]) {
-        return;
+gather_hit nearer(gather_hit best, flat_triangle t, vec3 origin, float facing) {
+    uvec4 r = texelFetch(corners, int(3u * t.number + 2u));
+    bundle_meeting met = meet_triangle(vec3(t.p.xy, t.q.z), vec3(t.p.zw, t.q.w),
+                                       vec3(t.q.xy, uintBitsToFloat(r.x)), origin.x, origin.y,
+                                       meeting_slack(bundle));
+    float distance = distance_along(met, facing, origin.z, bundle.right.w);
+    uint number = first_triangle + t.number;
+    bool takes = distance >= 0.0 && distance <= best.distance;
+    bool later = distance == best.distance && best.surface != 0xffffffffu &&
+                 number >= best.surface / 2u;
+    if (takes && !later && !is_hole(r.y, met.u, met.v)) {
+        best.distance = distance;
+        best.surface = 2u * number + (facing * met.facing < 0.0 ? 0u : 1u);
+        best.u = met.u;
+        best.v = met.v;
     }
-    placed_triangle t = place_triangle(large[group / share]);
-    cell_box box = cells_of(t);
-    for (int row = box.low.y + int(group % share); row <= box.high.y; row += int(share)) {
-        uvec2 run = samples_of_row(box, row);
-        for (uint k = run.x + gl_LocalInvocationID.x; k < run.y; k += 64u) {
-            test_sample(t, k);
+    return best;
+}
+gather_hit nearest_of(gather_hit best, uint k, uint end, vec3 origin, float facing) {
+    while (k < end) {
+        flat_triangle t;
+        bool met = false;
+        bool waits = false;
+        while (k < end && !waits) {
+            t = flat_entry(k);
+            met = passes(t, origin);
+            waits = met || (skybark_header.w & 2u) != 0u;
+            k += 1u;
+        }
+        if (met) {
+            best = nearer(best, t, origin, facing);
         }
     }
+    return best;
+}
+void main() {
+    uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
+             gl_LocalInvocationID.x;
+    if (i >= skybark_elements()) {
+        return;
+    }
+    gather_hit best = gather_hit(1e30, 0xffffffffu, 0.0, 0.0);
+    if (skybark_header.z != 0u) {
+        best = before[i];
+    }
+    gather_sample at = sample_list[i];
+    vec3 origin = across_bundle(bundle, ray_origin(bundle, at));
+    float facing = side_of_bundle(bundle, at.normal);
+    ivec2 cell = ivec2(grid_cell(origin.x), grid_cell(origin.y));
+    uint seen = 0u;
+    for (uint left = levels[0]; left != 0u; left &= left - 1u) {
+        uint number = cell_number(cell, uint(findLSB(left)));
+        uint begin = starts[number];
+        uint count = starts[number + 1u] - begin;
+        uint skipped = min(max(first, seen) - seen, count);
+        uint wanted = min(max(last, seen) - seen, count);
+        best = nearest_of(best, begin + skipped, begin + wanted, origin, facing);
+        seen += count;
+    }
+    if (seen > last) {
+        more[0] = skybark_header.y;
+    }
+    hits[i] = best;
 }
 )glsl";
 

@@ -1,0 +1,3 @@
+#version 450
+#define RESOLVE_HOLES
+#include "resolve_hits.glsl"
