@@ -86,27 +86,27 @@ inline constexpr std::size_t wanted_bands = 32;
     constexpr std::size_t most_seen = 512;
     std::array<float, most_seen> heights;
     const std::size_t seen = std::min(most_seen, samples.size());
-    std::size_t near = 0;
+    std::size_t used = 0;
     float low_x = 0;
     float high_x = 0;
     // What is far from the scene meets nothing.
-    const float far = 2.0f * bundle.centre.w;
+    const float horizon = 2.0f * bundle.centre.w;
     for (std::size_t i = 0; i < seen; ++i) {
         const placed_sample at = place(bundle, samples[samples.size() * i / seen], 0);
-        if (std::abs(at.x) <= far && std::abs(at.y) <= far) {
-            low_x = near == 0 ? at.x : std::min(low_x, at.x);
-            high_x = near == 0 ? at.x : std::max(high_x, at.x);
-            heights[near++] = at.y;
+        if (std::abs(at.x) <= horizon && std::abs(at.y) <= horizon) {
+            low_x = used == 0 ? at.x : std::min(low_x, at.x);
+            high_x = used == 0 ? at.x : std::max(high_x, at.x);
+            heights[used++] = at.y;
         }
     }
     grid g;
-    if (near == 0) {
+    if (used == 0) {
         g.first_row[1] = 1;
         return g;
     }
-    std::sort(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(near));
+    std::sort(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(used));
     const float width = high_x - low_x;
-    const float height = heights[near - 1] - heights[0];
+    const float height = heights[used - 1] - heights[0];
     const float cells = std::max(
         static_cast<float>(samples.size()) / samples_a_cell(samples.size(), triangles), 1.0f);
     // width · scale columns by height · scale rows.
@@ -128,7 +128,7 @@ inline constexpr std::size_t wanted_bands = 32;
         std::clamp<std::size_t>(std::max(for_cache, for_tasks), 1, most_bands));
     g.bands = 0;
     for (std::uint32_t b = 0; b < wanted; ++b) {
-        const std::uint32_t first = b == 0 ? 0 : g.row(heights[near * b / wanted]);
+        const std::uint32_t first = b == 0 ? 0 : g.row(heights[used * b / wanted]);
         if (b == 0 || first > g.first_row[g.bands - 1]) {
             g.first_row[g.bands++] = first;
         }

@@ -644,12 +644,13 @@ class band_work {
         f16 low = plus(all(grid_->bottom - margin), times(row, all(side)));
         f16 high = plus(all(grid_->bottom + margin), times(plus(row, all(1.0f)), all(side)));
         // The outer rows go on without end.
-        const f16 far = all(3e38f);
+        const f16 endless = all(3e38f);
         low = _mm512_mask_mov_ps(low, _mm512_cmpeq_epi32_mask(rows, _mm512_setzero_si512()),
-                                 minus(_mm512_setzero_ps(), far));
-        high = _mm512_mask_mov_ps(high, _mm512_cmpeq_epi32_mask(rows, all(grid_->rows - 1)), far);
-        f16 least = far;
-        f16 most = minus(_mm512_setzero_ps(), far);
+                                 minus(_mm512_setzero_ps(), endless));
+        high =
+            _mm512_mask_mov_ps(high, _mm512_cmpeq_epi32_mask(rows, all(grid_->rows - 1)), endless);
+        f16 least = endless;
+        f16 most = minus(_mm512_setzero_ps(), endless);
         cut_edge(t.ax, t.ay, t.bx, t.by, low, high, margin, least, most);
         cut_edge(t.bx, t.by, t.cx, t.cy, low, high, margin, least, most);
         cut_edge(t.cx, t.cy, t.ax, t.ay, low, high, margin, least, most);
