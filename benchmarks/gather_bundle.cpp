@@ -2,23 +2,26 @@
 //
 //   gather/bundle/METHOD_BACKEND/SCENE_SAMPLES
 //       METHOD   resolve    exact at each point, as the backend does it fastest
-//                composed   the same of the patterns that all backends have; where resolve differs
+//                composed   the same, of the patterns that all backends have
+//                peel       the document's layers of depth, in pictures of 1024 by 1024 pixels
 //       SCENE    cornell, park, canopy: examples/scenes
 //   gather/bundle/embree_…  rays traced one by one instead: benchmarks/embree/gather_bundle.cpp
 //
 // Points lie evenly on the surfaces, in Morton order. Each iteration takes the next of 64 axes, the
 // same for all methods, and everything that a direction needs: nothing is built beforehand but by
-// Embree. Items are points: rays that somebody asked for.
+// Embree. Items are points: rays that somebody asked for. `cpu_ms` is what all threads of the
+// process spent on an iteration: where the machine is busy, a better measure than the time.
 //
 // For a table, with everything in one run on a machine that does nothing else, of the preset bench:
 //   skybark_benchmarks
-//   --benchmark_filter='^gather/bundle/((resolve|composed)_|embree_(random|shared)/)'
+//   --benchmark_filter='^gather/bundle/((resolve|composed|peel)_|embree_(random|shared)/)'
 //       --benchmark_repetitions=9 --benchmark_report_aggregates_only=true
 //       --benchmark_enable_random_interleaving=true --benchmark_min_time=0.5
 
 #include "devices.hpp"
 #include "gather_work.hpp"
 
+#include <skybark/gather/bundle_peeler.hpp>
 #include <skybark/gather/bundle_resolver.hpp>
 
 #include <benchmark/benchmark.h>
@@ -26,11 +29,13 @@
 namespace skybark::benchmarks {
 namespace {
 
+enum class bundle_method { resolve, composed, peel };
+
 /// What one benchmark measures.
 struct bundle_row {
     std::string scene;
     std::uint32_t samples;
-    gather::resolve_route route;
+    bundle_method method;
 };
 
 /// A scene and its points on a device.
@@ -57,36 +62,70 @@ struct device_work {
     }
 };
 
-template <backend B>
-result<void> resolve(benchmark::State& state, B& device, const bundle_row& row) {
-    const gather_work& work = work_of(row.scene, row.samples);
-    const auto buffers = device_work<B>::create(device, work);
-    if (!buffers) {
-        return failure(buffers.error());
-    }
-    gather::resolver_options options;
-    options.route = row.route;
-    auto resolver =
-        gather::bundle_resolver<B>::create(device, work.scene.triangles.size(), options);
-    if (!resolver) {
-        return failure(resolver.error());
-    }
-    const bundle_work<B> views = buffers->views();
-    const auto pass = [&](std::uint32_t turn) {
-        const ray_bundle bundle = resolver->bundle(work.box, axis_of(turn), work.lift);
-        return run(device, [&](auto& recorder) { resolver->record(recorder, bundle, views); });
-    };
+/// `pass(turn)` resolves the bundle of that turn.
+template <class Pass>
+[[nodiscard]] result<void> loop(benchmark::State& state, const bundle_row& row, Pass&& pass) {
     if (auto done = pass(0); !done) { // makes programs and touches pages
         return done;
     }
+    const cpu_clock clock;
     std::uint32_t turn = 0;
     for (auto _ : state) {
         if (auto done = pass(turn++); !done) {
             return done;
         }
     }
+    state.counters["cpu_ms"] = clock.milliseconds() / static_cast<double>(turn);
     state.SetItemsProcessed(state.iterations() * row.samples);
     return {};
+}
+
+template <backend B>
+[[nodiscard]] result<void> resolve(benchmark::State& state, B& device, const bundle_row& row,
+                                   const device_work<B>& buffers) {
+    const gather_work& work = work_of(row.scene, row.samples);
+    gather::resolver_options options;
+    options.route = row.method == bundle_method::composed ? gather::resolve_route::composed
+                                                          : gather::resolve_route::fastest;
+    auto resolver =
+        gather::bundle_resolver<B>::create(device, work.scene.triangles.size(), options);
+    if (!resolver) {
+        return failure(resolver.error());
+    }
+    return loop(state, row, [&](std::uint32_t turn) {
+        const ray_bundle bundle = resolver->bundle(work.box, axis_of(turn), work.lift);
+        return run(device,
+                   [&](auto& recorder) { resolver->record(recorder, bundle, buffers.views()); });
+    });
+}
+
+template <backend B>
+[[nodiscard]] result<void> peel(benchmark::State& state, B& device, const bundle_row& row,
+                                const device_work<B>& buffers) {
+    const gather_work& work = work_of(row.scene, row.samples);
+    auto peeler = gather::bundle_peeler<B>::create(device);
+    if (!peeler) {
+        return failure(peeler.error());
+    }
+    return loop(state, row, [&](std::uint32_t turn) -> result<void> {
+        const ray_bundle bundle = peeler->bundle(work.box, axis_of(turn), work.lift);
+        const auto layers = peeler->resolve(bundle, work.box, buffers.views());
+        if (!layers) {
+            return failure(layers.error());
+        }
+        state.counters["layers"] = *layers;
+        return {};
+    });
+}
+
+template <backend B>
+[[nodiscard]] result<void> measure_on(benchmark::State& state, B& device, const bundle_row& row) {
+    const auto buffers = device_work<B>::create(device, work_of(row.scene, row.samples));
+    if (!buffers) {
+        return failure(buffers.error());
+    }
+    return row.method == bundle_method::peel ? peel(state, device, row, *buffers)
+                                             : resolve(state, device, row, *buffers);
 }
 
 template <backend B>
@@ -96,30 +135,34 @@ void measure(benchmark::State& state, const bundle_row& row) {
         state.SkipWithError(device.error().message.c_str());
         return;
     }
-    if (const auto done = resolve(state, **device, row); !done) {
+    if (const auto done = measure_on(state, **device, row); !done) {
         state.SkipWithError(done.error().message.c_str());
     }
 }
 
 template <backend B>
-void add(const std::string& method, const std::string& backend_name, gather::resolve_route route) {
-    for (const char* scene : scenes::scene_names) {
-        for (const std::uint32_t samples : {65536u, 1048576u}) {
-            const std::string name = std::string("gather/bundle/") + method + "_" + backend_name +
-                                     "/" + scene + "_" + std::to_string(samples);
-            benchmark::RegisterBenchmark(name.c_str(), measure<B>,
-                                         bundle_row{scene, samples, route})
-                ->Unit(benchmark::kMillisecond)
-                ->UseRealTime();
+void add(const std::string& backend_name) {
+    const std::pair<const char*, bundle_method> methods[] = {{"resolve", bundle_method::resolve},
+                                                             {"composed", bundle_method::composed},
+                                                             {"peel", bundle_method::peel}};
+    for (const auto& [method_name, method] : methods) {
+        for (const char* scene : scenes::scene_names) {
+            for (const std::uint32_t samples : {65536u, 1048576u}) {
+                const std::string name = std::string("gather/bundle/") + method_name + "_" +
+                                         backend_name + "/" + scene + "_" + std::to_string(samples);
+                benchmark::RegisterBenchmark(name.c_str(), measure<B>,
+                                             bundle_row{scene, samples, method})
+                    ->Unit(benchmark::kMillisecond)
+                    ->UseRealTime();
+            }
         }
     }
 }
 
 const bool added = [] {
-    add<cpu::device>("resolve", "cpu", gather::resolve_route::fastest);
-    add<cpu::device>("composed", "cpu", gather::resolve_route::composed);
-    add<opengl::device>("resolve", "opengl", gather::resolve_route::fastest);
-    add<vulkan::device>("resolve", "vulkan", gather::resolve_route::fastest);
+    add<cpu::device>("cpu");
+    add<opengl::device>("opengl");
+    add<vulkan::device>("vulkan");
     return true;
 }();
 

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <map>
 #include <string>
 #include <utility>
@@ -42,5 +43,16 @@ struct gather_work {
     const double r = std::sqrt(1 - y * y);
     return {r * std::cos(angle), y, r * std::sin(angle)};
 }
+
+/// What all threads of the process have spent since it was made.
+class cpu_clock {
+  public:
+    [[nodiscard]] double milliseconds() const {
+        return 1e3 * static_cast<double>(std::clock() - begin_) / CLOCKS_PER_SEC;
+    }
+
+  private:
+    std::clock_t begin_ = std::clock();
+};
 
 } // namespace skybark::benchmarks

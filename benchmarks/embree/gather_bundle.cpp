@@ -125,10 +125,12 @@ void embree(benchmark::State& state, const embree_row& row) {
     const embree_call call =
         row.call < 0 ? fastest_call(device, pass, hits) : embree_calls[row.call];
     run_pass(device, pass, call, hits); // touches pages
+    const cpu_clock clock;
     for (auto _ : state) {
         run_pass(device, pass, call, hits);
         ++pass.turn;
     }
+    state.counters["cpu_ms"] = clock.milliseconds() / static_cast<double>(pass.turn);
     state.SetItemsProcessed(state.iterations() * row.samples);
     state.SetLabel(embree_call_names[static_cast<int>(call)]);
 }
