@@ -8,7 +8,8 @@
 //     bundle_look    each sample against the triangles of its cell, in each grid
 //
 // Like what the patterns compose (shared/bundle.glsl), but with lists in place of neighbours: a
-// sample meets a quarter as many triangles. A triangle is in the finest grid of which four cells
+// sample looks at a quarter as many triangles, and of these only at those whose box it lies in and
+// that reach as far as it. A triangle is in the finest grid of which four cells
 // are as wide as it is, each grid having a quarter of the cells across of the one before, and so in
 // 25 cells at most. Which triangle counts does not depend on the order of a list, so that lists may
 // be made by atomic additions, and the results have the bits that the patterns give.
@@ -50,4 +51,26 @@ uint sides_within(vec2 low, vec2 high, vec2 cell) {
     uvec2 least = uvec2(clamp(low - cell, 0.0, 1.0) * 127.0);
     uvec2 most = 127u - uvec2(clamp(high - cell, 0.0, 1.0) * 127.0);
     return least.x | most.x << 8 | least.y << 16 | most.y << 24;
+}
+
+// How far along the bundle, from 0 to 63.
+uint depth_step(float z) {
+    return uint(clamp(0.5 + 0.5 * (z / bundle.centre.w), 0.0, 1.0) * 63.0);
+}
+
+// A listed triangle is two words: sides_within of its box; its number (18 bits), and how far it
+// reaches along the bundle and against it, each with a bit above it for what is taken away.
+const uint listed_number = 0x3ffffu;
+const uint reach_guards = 0x81000000u;
+uint listed_triangle(uint number, float least, float most) {
+    float doubt = 1e-6 * max(abs(least), abs(most)) + 4.0 * meeting_slack(bundle);
+    return number | depth_step(most + doubt) << 18u | (63u - depth_step(least - doubt)) << 25u |
+           reach_guards;
+}
+
+// What a triangle must reach to be met from z, by those that look along the bundle (1) or against
+// it (-1).
+uint wanted_reach(float z, float side) {
+    float behind = z - side * bundle.right.w;
+    return side > 0.0 ? depth_step(behind) << 18u : (63u - depth_step(behind)) << 25u;
 }

@@ -8,13 +8,13 @@ layout(std430, binding = 0) readonly buffer samples_buffer { gather_sample sampl
 layout(std430, binding = 1) readonly buffer corners_buffer { vec4 corners[]; };
 layout(std430, binding = 2) readonly buffer ends_buffer { uint ends[]; };
 layout(std430, binding = 3) readonly buffer listed_buffer { uvec2 listed[]; };
-layout(std430, binding = 4) readonly buffer levels_buffer { uint levels[]; };
+layout(std430, binding = 4) readonly buffer levels_buffer { uvec4 levels[]; };
 layout(std430, binding = 5) readonly buffer before_buffer { gather_hit before[]; };
 layout(std430, binding = 6) writeonly buffer hits_buffer { gather_hit hits[]; };
 bool is_hole(uint alpha, float u, float v);
 
 // The better of what is known and what triangle i gives; of equally distant ones the lower.
-gather_hit nearer(gather_hit best, uint i, vec3 origin, float side) {
+gather_hit nearer(gather_hit best, bool is_there, uint i, vec3 origin, float side) {
     vec4 p = corners[3u * i];
     vec4 q = corners[3u * i + 1u];
     vec4 r = corners[3u * i + 2u];
@@ -23,7 +23,7 @@ gather_hit nearer(gather_hit best, uint i, vec3 origin, float side) {
                       origin.y, meeting_slack(bundle));
     float distance = distance_along(met, side, origin.z, bundle.right.w);
     uint triangle = first_triangle + i;
-    bool better = distance >= 0.0 &&
+    bool better = is_there && distance >= 0.0 &&
                   (distance < best.distance || (distance == best.distance &&
                                                 (best.surface == 0xffffffffu ||
                                                  triangle < best.surface / 2u)));
@@ -36,16 +36,21 @@ gather_hit nearer(gather_hit best, uint i, vec3 origin, float side) {
     return found;
 }
 
-// Which of up to 32 listed triangles have the place in their box. Software rasterisers run what a
-// condition leaves out as well, so that the few triangles that are worth a look are found first.
-uint worth_a_look(uint from, uint n, uint place) {
+// Which of up to 32 listed triangles have the place in their box and reach far enough. Software
+// rasterisers run what a condition leaves out as well, and each loop's body once more than its
+// turns where the condition stands first: so the few triangles that are worth a look are found
+// before, and conditions stand last.
+uint worth_a_look(uint from, uint n, uint place, uint reach) {
     uint worth = 0u;
     uint bit = 1u;
-    for (uint k = 0u; k < n; ++k) {
-        uint apart = (place | 0x80808080u) - listed[from + k].x;
-        worth |= (apart & 0x80808080u) == 0x80808080u ? bit : 0u;
+    uint k = 0u;
+    do {
+        uvec2 one = listed[from + k];
+        uint inside = ((place | 0x80808080u) - one.x) & 0x80808080u;
+        uint reaches = (one.y - reach) & reach_guards;
+        worth |= k < n && inside == 0x80808080u && reaches == reach_guards ? bit : 0u;
         bit <<= 1u;
-    }
+    } while (++k < n);
     return worth;
 }
 
@@ -66,14 +71,14 @@ void main() {
     gather_sample at = samples[i];
     vec3 origin = across_bundle(bundle, ray_origin(bundle, at));
     float side = side_of_bundle(bundle, at.normal);
+    uint reach = wanted_reach(origin.z, side);
     uint last = first + count;
     uint seen = 0u;
-    uint used = levels[0];
-    for (uint l = 1u; l <= used; ++l) {
-        bundle_grid grid = finest_grid();
-        for (uint level = levels[l]; level > 0u; --level) {
-            grid = coarser(grid);
-        }
+    uint used = levels[0].x;
+    uint l = 1u;
+    do {
+        uvec4 level = levels[l];
+        bundle_grid grid = bundle_grid(level.x, level.y, uintBitsToFloat(level.z));
         vec2 place = in_cells(grid, origin.xy);
         ivec2 cell =
             ivec2(cell_within(place.x, int(grid.side)), cell_within(place.y, int(grid.side)));
@@ -85,14 +90,17 @@ void main() {
         end = begin + min(max(last, seen) - seen, length);
         begin += min(max(first, seen) - seen, length);
         seen += length;
-        while (begin < end) {
-            uint worth = worth_a_look(begin, min(end - begin, 32u), sides);
-            while (worth != 0u) {
-                best = nearer(best, listed[begin + uint(findLSB(worth))].y, origin, side);
+        do {
+            uint worth = worth_a_look(begin, min(end - begin, 32u), sides, reach);
+            do {
+                bool is_there = worth != 0u;
+                uint word = listed[is_there ? begin + uint(findLSB(worth)) : 0u].y;
+                uint triangle = is_there ? word & listed_number : 0u;
+                best = nearer(best, is_there, triangle, origin, side);
                 worth &= worth - 1u;
-            }
-            begin += 32u;
-        }
-    }
+            } while (worth != 0u);
+            begin = min(begin + 32u, end);
+        } while (begin < end);
+    } while (++l <= used);
     hits[i] = best;
 }

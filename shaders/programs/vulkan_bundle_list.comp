@@ -16,6 +16,8 @@ void main() {
     uvec4 cover = covers[i];
     vec4 p = corners[3u * i];
     vec4 q = corners[3u * i + 1u];
+    float cz = corners[3u * i + 2u].x;
+    uint triangle = listed_triangle(i, min(q.z, min(q.w, cz)), max(q.z, max(q.w, cz)));
     bundle_grid grid = finest_grid();
     while (grid.side != cover.z) {
         grid = coarser(grid);
@@ -29,6 +31,6 @@ void main() {
         uint row = bit / uint(most_across);
         uint column = bit - row * uint(most_across);
         uint place = atomicAdd(ends[cover.y + row * cover.z + column + 1u], 1u);
-        listed[place] = uvec2(sides_within(low, high, begin + vec2(column, row)), i);
+        listed[place] = uvec2(sides_within(low, high, begin + vec2(column, row)), triangle);
     }
 }

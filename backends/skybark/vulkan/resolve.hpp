@@ -3,8 +3,8 @@
 //
 // What the patterns compose (gather/bundle_resolver.hpp) runs as well here. This is faster where a
 // load costs more than arithmetic does, as on software rasterisers: a triangle is listed in every
-// cell that it may cover, so that a sample looks at one list a grid, and only at those of its
-// triangles whose box it lies in.
+// cell that it may cover, so that a sample looks at one list a grid and not at nine cells, and at
+// few of its triangles.
 
 #include <skybark/vulkan/programs/own_bundle_cover.hpp>
 #include <skybark/vulkan/programs/own_bundle_levels.hpp>
@@ -61,11 +61,11 @@ inline void recorder::resolve(const ray_bundle& bundle, const bundle_work<device
     if (samples.size < sizeof(gather_sample)) {
         return;
     }
-    // Lists are as long as a view may be, and memory for them has an end.
+    // Lists are as long as a view may be, and name their triangles by 18 bits.
     const std::uint64_t fit =
         state_->shared.limits.max_buffer_bytes / (8 * detail::bundle_cells_covered);
     const auto most =
-        static_cast<std::uint32_t>(std::min<std::uint64_t>(fit, 1u << 19) / 4096 * 4096);
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(fit, 1u << 18) / 4096 * 4096);
     detail::bundle_lists lists = bundle_memory(bundle, std::min(count, most));
     const slice alpha = bound(work.alpha);
     const slice hits = bound(work.hits);
@@ -89,8 +89,8 @@ inline detail::bundle_lists recorder::bundle_memory(const ray_bundle& bundle, st
     lists.corners = scratch(some * 48);
     lists.covers = scratch(some * 16);
     lists.ends = scratch((cells + 2) * 4);
-    lists.listed = scratch(some * 8 * detail::bundle_cells_covered);
-    lists.levels = scratch((detail::bundle_grids + 1) * 4);
+    lists.listed = scratch(some * 8 * detail::bundle_cells_covered + 8); // reads go one too far
+    lists.levels = scratch((detail::bundle_grids + 1) * 16);
     lists.crowded = scratch(4);
     return lists;
 }
