@@ -634,6 +634,7 @@ class final_gather {
         }
         for (const buffer_view<B>& v :
              {scene_->triangles(), scene_->alpha(), scene_->tables(), scene_->radiance()}) {
+            found.add_value(v.size);
             if (auto done = add_content(found, v); !done) {
                 return failure(done.error());
             }

@@ -13,19 +13,21 @@
 
 namespace skybark::gather::detail {
 
-/// A number that changes with whatever goes in: not against forgers.
+/// A number that changes with whatever goes in: not against forgers. Bytes may come in runs of
+/// eightfold length, cut anywhere; the last run may have any length.
 class fingerprint {
   public:
     void add(std::span<const std::byte> bytes) {
-        add_word(bytes.size());
         for (; bytes.size() >= 8; bytes = bytes.subspan(8)) {
             std::uint64_t word = 0;
             std::memcpy(&word, bytes.data(), 8);
             add_word(word);
         }
-        std::uint64_t rest = 0;
-        std::memcpy(&rest, bytes.data(), bytes.size());
-        add_word(rest);
+        if (!bytes.empty()) {
+            std::uint64_t rest = 0;
+            std::memcpy(&rest, bytes.data(), bytes.size());
+            add_word(rest);
+        }
     }
     template <class T>
     void add_value(const T& value) {
