@@ -50,7 +50,8 @@ int run(int count, char** words) {
                  "skybark"};
     app.set_version_flag("--version", std::string("skybark ") + SKYBARK_VERSION);
     std::vector<command> commands{add_tree_command(app), add_cloud_command(app),
-                                  add_devices_command(app), add_conformance_command(app)};
+                                  add_gather_command(app), add_devices_command(app),
+                                  add_conformance_command(app)};
     app.require_subcommand(0, 1);
     for (CLI::App* sub : app.get_subcommands({})) {
         sub->set_version_flag("--version", std::string("skybark ") + SKYBARK_VERSION);
@@ -62,7 +63,7 @@ int run(int count, char** words) {
     const std::string first = words[1];
     if (first.substr(0, 1) != "-" && !is_known(commands, first)) {
         return usage_error("", "There is no command " + io::in_quotes(first) +
-                                   "; expected tree, cloud, devices or conformance.");
+                                   "; expected tree, cloud, gather, devices or conformance.");
     }
     try {
         app.parse(count, words);
@@ -77,7 +78,8 @@ int run(int count, char** words) {
             return c.run();
         }
     }
-    return usage_error("", "There is no command; expected tree, cloud, devices or conformance.");
+    return usage_error(
+        "", "There is no command; expected tree, cloud, gather, devices or conformance.");
 }
 
 } // namespace

@@ -21,8 +21,10 @@ void stages::begin(std::string_view name) {
                                     [&](const auto& stage) { return stage.first == name; });
     current_ = static_cast<std::size_t>(found - seconds_.begin());
     started_ = clock::now();
-    draw_bar();
+    draw_bar(0, {});
 }
+
+void stages::advance(double part, std::string_view note) { draw_bar(part, note); }
 
 void stages::end() {
     if (current_ >= seconds_.size()) {
@@ -41,14 +43,17 @@ double stages::total() const {
     return sum;
 }
 
-void stages::draw_bar() const {
+void stages::draw_bar(double part, std::string_view note) const {
     if (!bar_ || current_ >= seconds_.size()) {
         return;
     }
     constexpr std::size_t width = 30;
-    const std::size_t done = width * current_ / seconds_.size();
+    const double stages_done = static_cast<double>(current_) + std::clamp(part, 0.0, 1.0);
+    const auto done = static_cast<std::size_t>(static_cast<double>(width) * stages_done /
+                                               static_cast<double>(seconds_.size()));
     const std::string bar = std::string(done, '#') + std::string(width - done, '.');
-    std::fprintf(stderr, "\r[%s] %s\033[K", bar.c_str(), seconds_[current_].first.c_str());
+    std::fprintf(stderr, "\r[%s] %s %.*s\033[K", bar.c_str(), seconds_[current_].first.c_str(),
+                 static_cast<int>(note.size()), note.data());
     std::fflush(stderr);
 }
 

@@ -21,6 +21,8 @@ class stages {
     /// Ends the stage that was going on, if any.
     void begin(std::string_view name);
     void end();
+    /// How much of the stage is done, 0 to 1, for the bar; what else is to be said of it.
+    void advance(double part, std::string_view note = {});
 
     [[nodiscard]] const std::vector<std::pair<std::string, double>>& seconds() const {
         return seconds_;
@@ -30,7 +32,7 @@ class stages {
   private:
     using clock = std::chrono::steady_clock;
 
-    void draw_bar() const;
+    void draw_bar(double part, std::string_view note) const;
     void clear_bar() const;
 
     std::vector<std::pair<std::string, double>> seconds_;

@@ -1,0 +1,447 @@
+// The gather command: its options, its input, its files.
+
+#include "commands.hpp"
+#include "gather_job.hpp"
+#include "vertex_points.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <io/atomic_file.hpp>
+#include <io/exr.hpp>
+#include <io/gather_points.hpp>
+#include <io/read_scene.hpp>
+#include <io/text_input.hpp>
+#include <io/write_glb.hpp>
+#include <io/write_obj.hpp>
+#include <io/write_ply.hpp>
+#include <nlohmann/json.hpp>
+
+#include <bit>
+#include <cmath>
+
+namespace skybark::tool {
+
+namespace {
+
+/// The options as they were typed.
+struct gather_words {
+    common_words common;
+    std::string input;
+    std::string out;
+    gather_option_words more;
+};
+
+bool same_file(const std::string& a, const std::string& b) {
+    std::error_code error;
+    return !a.empty() && !b.empty() && (a == b || std::filesystem::equivalent(a, b, error));
+}
+
+/// Turns words into a job. Errors are those of the command line.
+result<void> check_words(const gather_words& words, gather_job& job) {
+    const auto common = check(words.common);
+    if (!common) {
+        return failure(common.error());
+    }
+    if (words.input.empty()) {
+        return fail(error_code::bad_input,
+                    "There is no SCENE; expected triangles: a .obj or .glb file.");
+    }
+    if (words.out.empty()) {
+        return fail(error_code::bad_input, "There is no -o OUT; expected a name that ends in .csv, "
+                                           ".ply, .exr or .png.");
+    }
+    const auto options = check(words.more, {words.input, words.out});
+    if (!options) {
+        return failure(options.error());
+    }
+    // A state may be gone on with in place.
+    const std::string files[] = {words.input,     words.out,          words.common.stats,
+                                 options->points, options->unwrapped, options->save};
+    for (std::size_t i = 0; i < std::size(files); ++i) {
+        for (std::size_t k = 0; k < i; ++k) {
+            if (same_file(files[i], files[k])) {
+                return fail(error_code::bad_input,
+                            "Two of SCENE, -o, --points, --unwrapped, --save and --stats are the "
+                            "same file; expected each its own.");
+            }
+        }
+    }
+    job.common = *common;
+    job.options = *options;
+    job.input = words.input;
+    job.out = words.out;
+    return {};
+}
+
+result<void> gather_on_backend(gather_job& job) {
+    switch (job.common.backend) {
+    case backend_kind::opengl:
+        return gather_on_opengl(job);
+    case backend_kind::vulkan:
+        return gather_on_vulkan(job);
+    default:
+        return gather_on_cpu(job);
+    }
+}
+
+constexpr const char* backend_names[] = {"cpu", "opengl", "vulkan"};
+
+const char* backend_name(const gather_job& job) {
+    return backend_names[static_cast<std::size_t>(job.common.backend)];
+}
+
+nlohmann::ordered_json stats_of(const gather_job& job) {
+    nlohmann::ordered_json stats;
+    stats["command"] = "gather";
+    stats["version"] = SKYBARK_VERSION;
+    stats["input"] = job.input;
+    stats["output"] = job.out;
+    stats["backend"] = backend_name(job);
+    stats["device"] = job.device;
+    stats["driver"] = job.driver;
+    stats["counts"] = {{"triangles", job.triangles.size()},
+                       {"materials", job.materials.size()},
+                       {"patches", job.patches},
+                       {"points", job.points},
+                       {"directions", job.directions},
+                       {"bounces", job.options.bounces}};
+    stats["error"] = {{"rms", job.error}, {"reached", job.reached}};
+    if (job.options.places == gather_places::texels) {
+        stats["texels_per_metre"] = job.lightmap.texels_per_metre;
+    }
+    for (const auto& [name, seconds] : job.time.seconds()) {
+        stats["seconds"][name] = seconds;
+    }
+    stats["seconds"]["total"] = job.time.total();
+    stats["bytes"] = {{"up", job.traffic.up}, {"down", job.traffic.down}};
+    return stats;
+}
+
+result<void> write_stats(const gather_job& job) {
+    if (job.common.stats.empty()) {
+        return {};
+    }
+    // What isn't UTF-8 in a file's name is replaced, where the default would throw.
+    const auto replace = nlohmann::ordered_json::error_handler_t::replace;
+    return io::write_file(job.common.stats, stats_of(job).dump(2, ' ', false, replace) + "\n");
+}
+
+void summarise(const gather_job& job) {
+    if (job.common.quiet) {
+        return;
+    }
+    if (!job.reached) {
+        std::fprintf(stderr,
+                     "skybark: After %llu directions, --max-directions, the error is %g W/m²; "
+                     "expected %g.\n",
+                     static_cast<unsigned long long>(job.directions), job.error,
+                     job.options.error.value_or(0));
+    }
+    std::printf("%s: %llu points, %llu directions, %u bounces, error %.3g, %.2f s on %s (%s)\n",
+                job.out.c_str(), static_cast<unsigned long long>(job.points),
+                static_cast<unsigned long long>(job.directions), job.options.bounces, job.error,
+                job.time.total(), backend_name(job), job.device.c_str());
+}
+
+/// What can be known to fail is told before the work is done.
+result<void> check_files(const gather_job& job) {
+    for (const std::string& name :
+         {job.out, job.options.unwrapped, job.options.save, job.common.stats}) {
+        if (name.empty()) {
+            continue;
+        }
+        if (auto good = io::check_writable(name); !good) {
+            return good;
+        }
+    }
+    return {};
+}
+
+int run_gather(const gather_words& words) {
+    gather_job job(words.common.quiet);
+    if (auto good = check_words(words, job); !good) {
+        return usage_error("gather", good.error().message);
+    }
+    auto done = check_files(job);
+    if (done) {
+        done = read_gather(job);
+    }
+    if (done) {
+        done = gather_on_backend(job);
+    }
+    job.time.end(); // takes the bar away before a sentence comes
+    if (done) {
+        done = write_stats(job);
+    }
+    if (!done) {
+        return report_failure(done.error());
+    }
+    summarise(job);
+    return exit_done;
+}
+
+// ---- The scene ---------------------------------------------------------------------------------
+
+gather_material material_of(const io::scene_material& from, bool two_sided) {
+    gather_material m;
+    m.diffuse = from.diffuse;
+    m.emission = from.emission;
+    m.transmission = from.transmission;
+    m.two_sided = from.two_sided || two_sided ? 1 : 0;
+    return m;
+}
+
+void append_words(std::vector<std::uint32_t>& to, const alpha_coordinates& c) {
+    for (const float f : {c.a.x, c.a.y, c.b.x, c.b.y, c.c.x, c.c.y}) {
+        to.push_back(std::bit_cast<std::uint32_t>(f));
+    }
+    to.insert(to.end(), {c.map, c.size, std::bit_cast<std::uint32_t>(c.cutoff), 0, 0, 0});
+}
+
+/// Coordinates of the triangles with holes, then the maps that they name.
+result<void> add_holes(gather_job& job, const io::triangle_scene& scene) {
+    constexpr std::uint64_t words_each = sizeof(alpha_coordinates) / 4;
+    std::uint64_t with_holes = 0;
+    for (const std::uint32_t m : scene.material_of) {
+        with_holes += scene.materials[m].alpha_map != io::no_alpha_map ? 1 : 0;
+    }
+    if (with_holes == 0) {
+        return {};
+    }
+    std::uint64_t words = with_holes * words_each;
+    std::vector<std::uint32_t> first;
+    for (const io::alpha_map& map : scene.maps) {
+        if (map.width > 0xffffu || map.height > 0xffffu || words > 0x7fffffffu) {
+            return fail(error_code::out_of_memory,
+                        io::in_quotes(job.input) + " has alpha maps that are too large; expected "
+                                                   "sides of up to 65535 texels and 2^31 in all.");
+        }
+        first.push_back(static_cast<std::uint32_t>(words));
+        words += std::uint64_t{map.width} * map.height;
+    }
+    job.alpha.reserve(words);
+    for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+        const io::scene_material& m = scene.materials[scene.material_of[i]];
+        if (m.alpha_map == io::no_alpha_map) {
+            continue;
+        }
+        const io::alpha_map& map = scene.maps[m.alpha_map];
+        const glm::uvec3 t = scene.triangles[i];
+        alpha_coordinates c;
+        c.a = scene.coordinates[t.x];
+        c.b = scene.coordinates[t.y];
+        c.c = scene.coordinates[t.z];
+        c.map = first[m.alpha_map];
+        c.size = map.width + 65536 * map.height;
+        c.cutoff = m.cutoff;
+        append_words(job.alpha, c);
+        job.triangles[i].alpha = static_cast<std::uint32_t>(job.alpha.size() / words_each);
+    }
+    for (const io::alpha_map& map : scene.maps) {
+        for (const float value : map.values) {
+            job.alpha.push_back(std::bit_cast<std::uint32_t>(value));
+        }
+    }
+    return {};
+}
+
+result<void> read_triangles(gather_job& job) {
+    const auto scene = io::read_scene(job.input);
+    if (!scene) {
+        return failure(scene.error());
+    }
+    for (std::size_t i = 0; i < scene->triangles.size(); ++i) {
+        const glm::uvec3 t = scene->triangles[i];
+        gather_triangle made;
+        made.a = scene->positions[t.x];
+        made.b = scene->positions[t.y];
+        made.c = scene->positions[t.z];
+        made.material = scene->material_of[i];
+        job.triangles.push_back(made);
+        for (const std::uint32_t v : {t.x, t.y, t.z}) {
+            job.corner_normals.push_back(scene->normals[v]);
+        }
+    }
+    for (const io::scene_material& m : scene->materials) {
+        job.materials.push_back(material_of(m, job.options.two_sided));
+    }
+    return add_holes(job, *scene);
+}
+
+result<void> find_places(gather_job& job) {
+    if (job.options.places == gather_places::points) {
+        auto points = io::read_gather_points(job.options.points);
+        if (!points) {
+            return failure(points.error());
+        }
+        job.samples = std::move(*points);
+    }
+    if (job.options.places == gather_places::texels) {
+        auto map = gather::make_lightmap(job.triangles, {job.options.lightmap, 0});
+        if (!map) {
+            return fail(map.error().code, io::in_quotes(job.input) + ": " + map.error().message);
+        }
+        job.lightmap = std::move(*map);
+        job.samples = job.lightmap.samples;
+    }
+    if (job.options.places == gather_places::vertices) {
+        const float lift = gather::default_lift(gather::bounds_of(job.triangles));
+        auto vertices = find_vertices(job.triangles, job.corner_normals, lift);
+        job.samples = std::move(vertices.samples);
+        job.places = std::move(vertices.places);
+        job.mesh = std::move(vertices.triangles);
+        if (job.samples.empty()) {
+            return fail(error_code::bad_input, io::in_quotes(job.input) +
+                                                   " has no vertex with a normal: all triangles "
+                                                   "are without area; expected one that has some.");
+        }
+    }
+    return {};
+}
+
+// ---- What comes out ----------------------------------------------------------------------------
+
+/// The triangles, each with corners of its own, and their places in the lightmap.
+result<void> write_unwrapped(const gather_job& job) {
+    std::vector<surface_vertex> vertices(3 * job.triangles.size());
+    std::vector<std::uint32_t> indices(vertices.size());
+    for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+        const gather_triangle& t = job.triangles[i / 3];
+        surface_vertex& v = vertices[i];
+        v.position = i % 3 == 0 ? t.a : i % 3 == 1 ? t.b : t.c;
+        const glm::dvec3 across = glm::cross(glm::dvec3(t.b - t.a), glm::dvec3(t.c - t.a));
+        const double size = glm::length(across);
+        const glm::vec3 flat = size > 0 ? glm::vec3(across / size) : glm::vec3(0, 1, 0);
+        v.normal = job.corner_normals[i] == glm::vec3(0) ? flat : job.corner_normals[i];
+        v.u = job.lightmap.corners[i].x;
+        v.v = job.lightmap.corners[i].y;
+        v.tangent = glm::vec4(0, 0, 0, 1);
+        indices[i] = i;
+    }
+    const std::string& name = job.options.unwrapped;
+    const std::string extension = extension_of(name);
+    if (extension == ".ply") {
+        return io::write_ply(name, vertices, indices);
+    }
+    if (extension == ".obj") {
+        return io::write_obj(name, vertices, indices);
+    }
+    io::surface_material material;
+    material.name = "surface";
+    return io::write_glb(name, vertices, indices, material);
+}
+
+/// Row 0 of a lightmap is at v = 0, below; that of a picture is its top.
+result<void> write_lightmap(const gather_job& job, std::span<const glm::vec4> light) {
+    const std::size_t size = job.lightmap.size;
+    std::vector<glm::vec4> texels(size * size, glm::vec4(0));
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        texels[job.lightmap.texels[i]] = glm::vec4(glm::vec3(light[i]), 1);
+    }
+    gather::dilate(job.lightmap, std::span(texels));
+    std::vector<glm::vec4> rows(texels.size());
+    for (std::size_t y = 0; y < size; ++y) {
+        const auto from = texels.begin() + static_cast<std::ptrdiff_t>(y * size);
+        std::copy(from, from + static_cast<std::ptrdiff_t>(size),
+                  rows.begin() + static_cast<std::ptrdiff_t>((size - 1 - y) * size));
+    }
+    return io::write_exr(job.out, rows, job.lightmap.size, job.lightmap.size);
+}
+
+} // namespace
+
+float nearly_brightest(std::vector<float> values) {
+    if (values.empty()) {
+        return 0;
+    }
+    const auto at = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + at, values.end());
+    return values[static_cast<std::size_t>(at)];
+}
+
+result<void> read_gather(gather_job& job) {
+    job.time.begin("read");
+    auto done = io::within_memory(job.input, [&]() -> result<void> {
+        auto read = read_triangles(job);
+        return read ? find_places(job) : read;
+    });
+    if (done && !job.options.resume.empty()) {
+        auto state = io::load_text(job.options.resume);
+        if (!state) {
+            return failure(state.error());
+        }
+        job.resumed = std::move(*state);
+        const auto behind = state_behind_line(job);
+        done = behind ? result<void>() : failure(behind.error());
+    }
+    return done;
+}
+
+result<void> write_light(const gather_job& job, std::span<const glm::vec4> light) {
+    if (job.options.output == gather_output::lightmap) {
+        if (auto done = write_lightmap(job, light); !done) {
+            return done;
+        }
+    }
+    if (!job.options.unwrapped.empty()) {
+        if (auto done = write_unwrapped(job); !done) {
+            return done;
+        }
+    }
+    std::vector<gather_sample> points = job.samples;
+    for (std::size_t i = 0; i < job.places.size(); ++i) {
+        points[i].position = job.places[i];
+    }
+    if (job.options.output == gather_output::table) {
+        return io::write_gathered(job.out, points, light);
+    }
+    if (job.options.output == gather_output::mesh) {
+        constexpr float pi = 3.14159265f;
+        std::vector<float> brightness;
+        for (const glm::vec4& e : light) {
+            brightness.push_back(std::max({e.x, e.y, e.z}));
+        }
+        // A white surface with an irradiance of π has a radiance of 1.
+        const float white = job.options.exposure ? pi / *job.options.exposure
+                                                 : nearly_brightest(std::move(brightness));
+        return io::write_gathered_ply(job.out, points, light, white, job.mesh);
+    }
+    return {};
+}
+
+float patch_size_of(const gather_job& job) {
+    if (job.options.bounces == 0) {
+        return 0; // surfaces send out what they emit, evenly
+    }
+    if (job.options.patch_size > 0) {
+        return job.options.patch_size;
+    }
+    constexpr double wanted = 30000;
+    double area = 0;
+    for (const gather_triangle& t : job.triangles) {
+        area += 0.5 * glm::length(glm::cross(glm::dvec3(t.b - t.a), glm::dvec3(t.c - t.a)));
+    }
+    // A triangle of equal legs l and p a patch has 2 l² / p² patches: 4 times its area over p².
+    return static_cast<float>(std::sqrt(4 * area / wanted));
+}
+
+command add_gather_command(CLI::App& to) {
+    const auto words = std::make_shared<gather_words>();
+    CLI::App* gather = to.add_subcommand(
+        "gather", "Gather the light that arrives at the surfaces of a scene, from all directions");
+    gather->add_option("SCENE", words->input,
+                       "Triangles with diffuse colours and emission (.obj with .mtl, or .glb)");
+    gather
+        ->add_option(
+            "-o,--output", words->out,
+            "Irradiance and its error at points (.csv), a coloured mesh (.ply), a lightmap "
+            "(.exr) or a picture (.png); required")
+        ->type_name("OUT");
+    add_gather_options(*gather, words->more);
+    add_common_options(*gather, words->common);
+    return {"gather", [words] { return run_gather(*words); }};
+}
+
+} // namespace skybark::tool
