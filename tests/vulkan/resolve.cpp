@@ -295,7 +295,7 @@ TEST_P(resolving, more_triangles_than_a_list_can_number) {
     EXPECT_GT(check(s, bundle_of(s, 512, {1, 1, 1})), 20u);
 }
 
-TEST_P(resolving, stays_within_its_buffers) {
+TEST_P(resolving, stays_within_its_buffers_slow) {
     scene s;
     for (std::uint32_t i = 0; i < 300; ++i) {
         s.add_triangle(2, i % 9 == 0 ? 3.0f : 0.2f);
