@@ -110,9 +110,11 @@ std::vector<gather_hit> hits_of(device& d, const scene& s, const ray_bundle& bun
 }
 
 std::vector<bundle_lanes> all_lanes() {
-    std::vector<bundle_lanes> lanes{bundle_lanes::one};
-    if (cpu::best_bundle_lanes() != bundle_lanes::one) {
-        lanes.push_back(cpu::best_bundle_lanes());
+    std::vector<bundle_lanes> lanes;
+    for (const bundle_lanes l : {bundle_lanes::one, bundle_lanes::eight, bundle_lanes::sixteen}) {
+        if (l <= cpu::best_bundle_lanes()) {
+            lanes.push_back(l);
+        }
     }
     return lanes;
 }

@@ -28,12 +28,17 @@ struct bundle_scratch {
 
 /// Which instructions a bundle is resolved with; the fastest that the machine has, unless a test
 /// asks.
-enum class bundle_lanes { one, sixteen };
+enum class bundle_lanes { one, eight, sixteen };
 
 [[nodiscard]] inline bundle_lanes best_bundle_lanes() {
 #if defined(SKYBARK_HAS_SIXTEEN)
     if (__builtin_cpu_supports("avx512f")) {
         return bundle_lanes::sixteen;
+    }
+#endif
+#if defined(SKYBARK_BUNDLES_HAVE_EIGHT)
+    if (__builtin_cpu_supports("avx2")) {
+        return bundle_lanes::eight;
     }
 #endif
     return bundle_lanes::one;
@@ -47,8 +52,9 @@ inline constexpr std::uint32_t piece_triangles = 4096;
 inline constexpr std::uint32_t spare = 32; ///< whole vectors may reach beyond an end
 
 /// Plain functions by lanes.
-struct one_lane {
-    using band_work = plain::band_work;
+template <class Visitor>
+struct plain_lanes {
+    using band_work = plain::band_work<Visitor>;
     static constexpr auto place_samples = plain::place_samples;
     static constexpr auto band_ranges = plain::band_ranges;
     static constexpr auto pick = plain::pick;
@@ -296,7 +302,13 @@ template <class Device>
             continue;
         }
 #endif
-        done = resolve(bundles::one_lane{});
+#if defined(SKYBARK_BUNDLES_HAVE_EIGHT)
+        if (lanes != bundle_lanes::one) {
+            done = resolve(bundles::plain_lanes<bundles::plain::eight_at_a_time>{});
+            continue;
+        }
+#endif
+        done = resolve(bundles::plain_lanes<bundles::plain::one_at_a_time>{});
     }
     return done;
 }
