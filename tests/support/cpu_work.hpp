@@ -3,6 +3,7 @@
 
 #include <skybark/cpu/cpu.hpp>
 #include <skybark/kernels/branch_cap.hpp>
+#include <skybark/kernels/bundle_corner.hpp>
 #include <skybark/kernels/hermite_branch.hpp>
 #include <skybark/kernels/particle_impulse.hpp>
 #include <skybark/kernels/probe_level.hpp>
@@ -50,6 +51,7 @@ class cpu_work {
         make_draw();
         make_volumes();
         make_words();
+        make_bundle();
     }
 
     /// Records everything and returns without reading back.
@@ -68,8 +70,9 @@ class cpu_work {
                                      &count_[0], &count_[1], &rings_, &branches_, &caps_out_}) {
             all.emplace_back(b->data(), b->data() + b->size_bytes());
         }
-        for (const cpu::buffer* b : {&values_out_, &sizes_out_, &voxel_numbers_, &keys_[1],
-                                     &order_[1], &words_[1], &total_}) {
+        for (const cpu::buffer* b :
+             {&values_out_, &sizes_out_, &voxel_numbers_, &keys_[1], &order_[1], &words_[1],
+              &total_, &hits_, &layer_depth_[1], &layer_triangle_, &layer_count_}) {
             all.emplace_back(b->data(), b->data() + b->size_bytes());
         }
         for (const cpu::image* i : {&color_, &depth_, &volume_picture_}) {
@@ -210,6 +213,44 @@ class cpu_work {
         total_ = room<std::uint32_t>(1);
     }
 
+    void make_bundle() {
+        std::vector<gather_triangle> triangles(elements);
+        std::vector<gather_sample> samples(pairs);
+        for (gather_triangle& t : triangles) {
+            const glm::vec3 middle(unit(), unit(), unit());
+            for (glm::vec3* corner : {&t.a, &t.b, &t.c}) {
+                *corner = middle + 0.1f * glm::vec3(unit(), unit(), unit());
+            }
+        }
+        for (gather_sample& s : samples) {
+            s.position = {unit(), unit(), unit()};
+            s.normal = {0, 0, unit() < 0 ? -1 : 1};
+        }
+        triangles_ = put(triangles);
+        samples_ = put(samples);
+        hits_ = room<gather_hit>(pairs);
+        layer_depth_[0] = put(std::vector<float>(side * side, 1.0f));
+        layer_depth_[1] = room<float>(side * side);
+        layer_triangle_ = room<std::uint32_t>(side * side);
+        layer_count_ = room<count_record>(1);
+    }
+
+    void record_bundle(cpu::recorder& r) {
+        ray_bundle bundle;
+        bundle.centre.w = 1.2f;
+        bundle.right.w = 1e-4f;
+        bundle.up.w = 64 / 2.4f;
+        bundle.direction.w = 64;
+        r.resolve(bundle, {all_of(triangles_), {}, all_of(samples_), all_of(hits_)});
+        r.copy(all_of(layer_depth_[0]), all_of(layer_depth_[1]));
+        const peeled_layer<cpu::device> layer{side, side, all_of(layer_depth_[1]),
+                                              all_of(layer_triangle_), all_of(layer_count_)};
+        for (int i = 0; i < 2; ++i) {
+            r.peel(kernels::bundle_corner{bundle, 1.2f}, {all_of(triangles_)}, range{0, elements},
+                   layer);
+        }
+    }
+
     void record_volumes(cpu::recorder& r) {
         const range all{0, elements};
         r.accumulate(kernels::probe_slabs{5, 2, 3, 7}, {all_of(boxes_)}, all,
@@ -274,6 +315,7 @@ class cpu_work {
                state);
         record_volumes(r);
         record_words(r);
+        record_bundle(r);
     }
 
     cpu::device* device_;
@@ -287,6 +329,7 @@ class cpu_work {
     cpu::buffer boxes_, particles_, places_, weights_, values_out_, sizes_out_, voxel_numbers_;
     cpu::volume sums_, floats_[2], halves_, targets_[2];
     cpu::buffer keys_[2], order_[2], words_[2], total_;
+    cpu::buffer triangles_, samples_, hits_, layer_depth_[2], layer_triangle_, layer_count_;
 };
 
 } // namespace skybark::support
