@@ -255,6 +255,23 @@ TEST_P(resolving, crowds_are_looked_at_in_several_passes) {
     EXPECT_GT(check(s, bundle_of(s, 64, {0, 0, 1})), 190u);
 }
 
+TEST_P(resolving, neighbours_in_crowds_of_different_grids) {
+    // Invocations that run as one wait for each other in each grid, so that their turns add up.
+    scene s;
+    const float places[] = {-50, -30, -10, 10, 30};
+    for (std::uint32_t i = 0; i < 5 * 7000; ++i) {
+        const float z = 1 + static_cast<float>((i * 7919) % 35000) / 35000;
+        const float size = 0.01f * std::exp2(2 * static_cast<float>(i % 5));
+        const float x = places[i % 5];
+        s.surfaces.push_back({{x - size, -size, z}, 0, {x + size, -size, z}, 0, {x, size, z}, 0});
+    }
+    for (std::uint32_t i = 0; i < 64; ++i) {
+        s.points.push_back(
+            {{places[i % 5], 0, i < 32 ? 0.0f : 3.0f}, 0, {0, 0, i < 32 ? 1.0f : -1.0f}, 0});
+    }
+    EXPECT_EQ(check(s, bundle_of(s, 2048, {0, 0, 1})), 64u);
+}
+
 TEST_P(resolving, bad_triangles_and_samples_meet_nothing) {
     const float none = std::numeric_limits<float>::quiet_NaN();
     const float far = std::numeric_limits<float>::infinity();
