@@ -1,8 +1,8 @@
 #pragma once
 // Bundles of rays in one go: triangles are put into a hierarchy of grids by counting, in no order,
 // which takes a fraction of the time of a sort, and samples look at few of them; see
-// shaders/programs/resolve.glsl. What is needed besides is kept by the context, at most 84 bytes a
-// triangle of a slice and 4 a cell, and grows where it must.
+// shaders/programs/resolve.glsl. What is needed besides is kept by the context, at most 148
+// bytes a triangle of a slice and 4 a cell, and grows where it must.
 
 #include <skybark/opengl/programs/own_resolve_count.hpp>
 #include <skybark/opengl/programs/own_resolve_fill.hpp>
@@ -24,13 +24,13 @@ struct resolve_call {
     bound_range hits;
 };
 
-inline constexpr std::uint32_t most_sliced_triangles = 1u << 21;
-inline constexpr std::uint32_t most_entries = 9; ///< of a triangle
-inline constexpr std::uint32_t most_grid_cells = 1024;
+inline constexpr std::uint32_t most_sliced_triangles = 1u << 20;
+inline constexpr std::uint32_t most_entries = 25;      ///< of a triangle
+inline constexpr std::uint32_t most_grid_cells = 2048; ///< on a side
 /// Triangles that a sample looks at in the first pass, and in each further one: Mesa's software
 /// rasterisers end the loops of up to 16 invocations after 65,535 rounds that any of them makes.
 inline constexpr std::uint32_t first_tests = 3500;
-inline constexpr std::uint32_t further_tests = 30000;
+inline constexpr std::uint32_t further_tests = 20000;
 
 // Bindings of the programs, texture units 0 and 1 besides.
 inline constexpr std::uint32_t resolve_bindings = 0x7ff;
@@ -74,9 +74,11 @@ struct resolve_programs {
     return found;
 }
 
-/// Cells on a side of the finest grid, a power of two: about as many in all as triangles.
-[[nodiscard]] inline std::uint32_t grid_side(std::uint32_t triangles) {
-    const double side = std::ceil(std::sqrt(static_cast<double>(triangles)));
+/// Cells on a side of the finest grid, a power of two: about as many in all as triangles, or up to
+/// four times as many where there are samples to make up for it.
+[[nodiscard]] inline std::uint32_t grid_side(std::uint64_t triangles, std::uint64_t samples) {
+    const std::uint64_t cells = std::clamp(samples, triangles, 4 * triangles);
+    const double side = std::ceil(std::sqrt(static_cast<double>(cells)));
     return std::bit_ceil(
         static_cast<std::uint32_t>(std::clamp(side, 1.0, double{most_grid_cells})));
 }
@@ -214,7 +216,7 @@ inline void bind_texel_buffer(context& c, std::uint32_t unit, gl::handle texture
         std::min({triangles, most_sliced_triangles, c.max_buffer_texels / most_entries});
     resolve_parameters parameters;
     parameters.bundle = call.bundle;
-    parameters.side = grid_side(slice);
+    parameters.side = grid_side(slice, samples);
     parameters.scale = static_cast<float>(parameters.side) / (2 * call.bundle.centre.w);
     const auto scratch = size_resolve(c, slice, parameters.side);
     if (!scratch) {
