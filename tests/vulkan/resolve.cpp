@@ -261,7 +261,7 @@ TEST_P(resolving, neighbours_in_crowds_of_different_grids) {
     const float places[] = {-50, -30, -10, 10, 30};
     for (std::uint32_t i = 0; i < 5 * 7000; ++i) {
         const float z = 1 + static_cast<float>((i * 7919) % 35000) / 35000;
-        const float size = 0.01f * std::exp2(2 * static_cast<float>(i % 5));
+        const float size = 0.05f * std::exp2(2 * static_cast<float>(i % 5));
         const float x = places[i % 5];
         s.surfaces.push_back({{x - size, -size, z}, 0, {x + size, -size, z}, 0, {x, size, z}, 0});
     }
