@@ -789,6 +789,36 @@ void resolve_degenerate(context<B>& c, resolve_route route) {
     expect_likely_hits(c, scene, resolving<B>(c, scene, route).run(), 90);
 }
 
+/// Samples whose place or normal is no number meet nothing; those between them what they would.
+template <backend B>
+void resolve_no_numbers(context<B>& c, resolve_route route) {
+    bundle_scene scene;
+    scene.bundle = upright_bundle(16, 4, 0x1p-10f);
+    for (int k = 0; k < 8; ++k) {
+        add_square(scene, 8, static_cast<float>(k), k % 2 == 0);
+    }
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float inf = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < 200; ++i) {
+        const float up = i % 2 == 0 ? 1.0f : -1.0f;
+        scene.ask(glm::vec3(i % 7, i % 5, i % 8) - glm::vec3(3, 2.5f, 0.5f), {0, 0, up});
+        gather_sample& s = scene.samples.back();
+        const std::array<float, 3> wrong{nan, inf, -inf};
+        if (i % 3 == 1) {
+            s.position[i / 3 % 3] = wrong[static_cast<std::size_t>(i / 9 % 3)];
+        } else if (i % 3 == 2) {
+            s.normal[i / 3 % 3] = nan;
+        }
+    }
+    const auto hits = resolving<B>(c, scene, route).run();
+    comparison check = c.compare("surface and distance of a hit");
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        const gather_hit expected = i % 3 == 0 ? exact_hit(scene, scene.samples[i]) : gather_hit{};
+        check.same(hits[i].surface, expected.surface);
+        check.same(double{hits[i].distance}, double{expected.distance});
+    }
+}
+
 /// More triangles in one cell than a pass looks at, all above one another.
 template <backend B>
 void resolve_crowd(context<B>& c, resolve_route route, std::uint32_t triangles,
@@ -1030,6 +1060,7 @@ void add_bundle_route(cases<B>& to, const std::string& way, resolve_route route)
     add("alpha", resolve_alpha<B>);
     add("duplicates", resolve_duplicates<B>);
     add("degenerate", resolve_degenerate<B>);
+    add("no_numbers", resolve_no_numbers<B>);
     add("beside", resolve_beside<B>);
     add("crowd", [](context<B>& c, resolve_route how) { resolve_crowd(c, how, 4321, 100, 1000); });
     add("crowd_many",
