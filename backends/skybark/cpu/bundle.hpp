@@ -210,7 +210,9 @@ class batch {
                 static_cast<std::uint32_t>(std::min<std::size_t>(at_once, triangles_.size() - t));
             const std::uint32_t found = Lanes::pick(ranges_, t, count, band, numbers + waiting);
             for (std::uint32_t i = waiting; i < waiting + found; ++i) {
-                fetch(triangles_[numbers[i]]);
+                // A band's triangles may lie far apart, and on two lines of a cache each.
+                detail::fetch(&triangles_[numbers[i]].a);
+                detail::fetch(&triangles_[numbers[i]].reserved);
             }
             waiting += found;
             if (waiting > most - at_once) {
@@ -220,16 +222,6 @@ class batch {
         }
         work.meet(numbers, waiting);
         work.finish(hits_);
-    }
-
-    /// Says that a triangle will be read soon: a band's triangles may lie far apart.
-    static void fetch(const gather_triangle& triangle) {
-#if defined(__GNUC__)
-        __builtin_prefetch(&triangle.a);
-        __builtin_prefetch(&triangle.reserved);
-#else
-        (void)triangle;
-#endif
     }
 
     /// Sorts a band's samples by their cells.

@@ -3,6 +3,7 @@
 
 #include <skybark/cpu/bark.hpp>
 #include <skybark/cpu/device.hpp>
+#include <skybark/cpu/gather_light.hpp>
 #include <skybark/cpu/harris_splat.hpp>
 #include <skybark/cpu/hermite_branch.hpp>
 #include <skybark/cpu/leaf_blade.hpp>

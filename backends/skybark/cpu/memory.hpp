@@ -48,6 +48,15 @@ using memory = std::unique_ptr<void, free_memory>;
     return static_cast<std::byte*>(std::align(memory_alignment, 0, aligned, space));
 }
 
+/// Says that this will soon be read.
+inline void fetch([[maybe_unused]] const void* what) {
+#if defined(__GNUC__)
+    __builtin_prefetch(what);
+    // Or else GCC takes functions that only do this for such that do nothing, and leaves them out.
+    asm volatile("");
+#endif
+}
+
 /// What the machine has, in bytes; as much as there may be where it does not say. Systems promise
 /// more than they have, and end the program that takes it.
 [[nodiscard]] inline std::uint64_t memory_of_machine() {
