@@ -9,7 +9,7 @@ namespace skybark::tool {
 namespace {
 
 constexpr std::uint32_t most_directions = 100'000'000;
-constexpr std::uint32_t picture_directions = 256;
+constexpr std::uint32_t picture_directions = 512;
 constexpr std::uint32_t error_directions = 65536;
 constexpr double brightest = 1e9;
 
@@ -247,7 +247,7 @@ void add_gather_options(CLI::App& to, gather_option_words& words) {
                   "(.ply, .obj, .glb)")
         ->type_name("MESH");
     to.add_option("--directions", words.directions,
-                  "Axes to look along, to both sides (1024; 256 for a picture)")
+                  "Axes to look along, to both sides (1024; 512 for a picture)")
         ->type_name("D");
     to.add_option("--error", words.error,
                   "Go on until the standard error, rms over the points, is this small, in W/m²")

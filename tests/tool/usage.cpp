@@ -27,7 +27,7 @@ class tool_usage : public tool {
 } // namespace
 
 TEST_F(tool_usage, helps) {
-    for (const char* command : {"tree", "cloud", "devices", "conformance"}) {
+    for (const char* command : {"tree", "cloud", "gather", "devices", "conformance"}) {
         const outcome o = skybark({command, "--help"});
         EXPECT_EQ(o.code, 0);
         EXPECT_EQ(o.err, "");
@@ -48,6 +48,20 @@ TEST_F(tool_usage, helps) {
          "--volume",  "--method", "--padding", "--polygons",   "--route",  "--profile",   "--light",
          "--octaves", "--phase",  "--sigmas",  "--extinction", "--albedo", "--particles", "--half",
          "--probe",   "--camera", "--look-at", "--list",       "-o"}));
+    EXPECT_TRUE(has(skybark({"gather", "--help"}).out, {"--backend",    "--device",
+                                                        "--size",       "--seed",
+                                                        "--stats",      "--quiet",
+                                                        "--points",     "--lightmap",
+                                                        "--unwrapped",  "--directions",
+                                                        "--error",      "--max-directions",
+                                                        "--bounces",    "--bounce-directions",
+                                                        "--patch-size", "--sky",
+                                                        "--sun",        "--sun-irradiance",
+                                                        "--method",     "--peel-size",
+                                                        "--save",       "--resume",
+                                                        "--exposure",   "--supersampling",
+                                                        "--two-sided",  "--camera",
+                                                        "--look-at",    "-o"}));
 }
 
 TEST_F(tool_usage, tells_its_version) {
@@ -68,7 +82,7 @@ TEST_F(tool_usage, wants_a_command) {
     const outcome o = skybark({});
     EXPECT_EQ(o.code, 2);
     EXPECT_TRUE(has(o.err, {"Usage: skybark"}));
-    expect_refused({"grow"}, {"\"grow\"", "tree, cloud, devices or conformance"});
+    expect_refused({"grow"}, {"\"grow\"", "tree, cloud, gather, devices or conformance"});
     expect_refused({"--grow"}, {"--grow"});
 }
 
