@@ -7,9 +7,9 @@
 //     resolve_hits     each sample against the triangles of its cells
 //
 // A grid of the hierarchy has half as many cells on a side as the one before; a triangle is in the
-// finest in which its box touches no more than three cells a side: nine entries at most. The order
-// of a cell's triangles is by chance; nothing depends on it, as a sample keeps the nearest triangle,
-// and of equally near ones that of the lower number.
+// finest in which its box touches no more than five cells a side, and in those of them that it
+// touches itself: 25 entries at most. The order of a cell's triangles is by chance; nothing depends
+// on it, as a sample keeps the nearest triangle, and of equally near ones that of the lower number.
 //
 // Triangles [first_triangle, first_triangle + triangle_count) are one slice. `side`: cells on a side
 // of the finest grid, a power of two; `scale`: its cells in a metre.

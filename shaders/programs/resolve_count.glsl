@@ -22,11 +22,13 @@ void main() {
     corners[3u * i] = vec4(a.xy, b.xy);
     corners[3u * i + 1u] = vec4(c.xy, a.z, b.z);
     corners[3u * i + 2u] = vec4(c.z, uintBitsToFloat(t.alpha), 0.0, 0.0);
-    cell_box box = cells_of(a, b, c);
+    cell_box box = cells_of(a.xy, b.xy, c.xy);
     ivec2 step = ivec2(1 << box.level);
     for (int y = box.low.y >> box.level; y <= box.high.y >> box.level; ++y) {
         for (int x = box.low.x >> box.level; x <= box.high.x >> box.level; ++x) {
-            atomicAdd(counts[cell_number(ivec2(x, y) * step, box.level) + 1u], 1u);
+            if (may_meet(box, ivec2(x, y), a.xy, b.xy, c.xy)) {
+                atomicAdd(counts[cell_number(ivec2(x, y) * step, box.level) + 1u], 1u);
+            }
         }
     }
     if ((levels[0] >> box.level & 1u) == 0u) {

@@ -15,12 +15,14 @@ void main() {
     }
     vec4 p = uintBitsToFloat(texelFetch(corners, int(3u * i)));
     vec4 q = uintBitsToFloat(texelFetch(corners, int(3u * i + 1u)));
-    cell_box box = cells_of(vec3(p.xy, 0.0), vec3(p.zw, 0.0), vec3(q.xy, 0.0));
+    cell_box box = cells_of(p.xy, p.zw, q.xy);
     ivec2 step = ivec2(1 << box.level);
     for (int y = box.low.y >> box.level; y <= box.high.y >> box.level; ++y) {
         for (int x = box.low.x >> box.level; x <= box.high.x >> box.level; ++x) {
-            uint cell = cell_number(ivec2(x, y) * step, box.level);
-            entries[atomicAdd(starts[cell + 1u], 1u)] = i;
+            if (may_meet(box, ivec2(x, y), p.xy, p.zw, q.xy)) {
+                uint cell = cell_number(ivec2(x, y) * step, box.level);
+                entries[atomicAdd(starts[cell + 1u], 1u)] = i;
+            }
         }
     }
 }

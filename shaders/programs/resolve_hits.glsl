@@ -2,10 +2,8 @@
 // from `first` on and before `last`; where there are more, `more` becomes the number of samples.
 // header.z: 1 where the hits are those of a look at others before, and go on.
 //
-// Mesa's software rasterisers run what a condition guards whether or not anybody meets it, so the
-// loop over triangles looks for the next that the ray passes through, and no more; what only such a
-// triangle needs is done after that, for all neighbours at once. In the worst case they wait for
-// each other at every triangle, and turns of loops add up. With bit 1 of header.w they never wait.
+// Mesa's software rasterisers run what a condition guards whether or not anybody meets it, and a
+// loop once more where its end is found at its top.
 layout(local_size_x = 64) in;
 #include "resolve.glsl"
 #include "../skeletons/length.glsl"
@@ -63,7 +61,7 @@ bool passes(flat_triangle t, vec3 origin) {
     precise float e0 = bx * cy - by * cx;
     precise float e1 = cx * ay - cy * ax;
     precise float e2 = ax * by - ay * bx;
-    return min(e0, min(e1, e2)) >= 0.0 || max(e0, max(e1, e2)) <= 0.0;
+    return (e0 >= 0.0 && e1 >= 0.0 && e2 >= 0.0) || (e0 <= 0.0 && e1 <= 0.0 && e2 <= 0.0);
 }
 
 gather_hit nearer(gather_hit best, flat_triangle t, vec3 origin, float facing) {
@@ -86,19 +84,14 @@ gather_hit nearer(gather_hit best, flat_triangle t, vec3 origin, float facing) {
 }
 
 gather_hit nearest_of(gather_hit best, uint k, uint end, vec3 origin, float facing) {
-    while (k < end) {
-        flat_triangle t;
-        bool met = false;
-        bool waits = false;
-        while (k < end && !waits) {
-            t = flat_entry(k);
-            met = passes(t, origin);
-            waits = met || (skybark_header.w & 2u) != 0u;
+    if (k < end) {
+        do {
+            flat_triangle t = flat_entry(k);
+            if (passes(t, origin)) {
+                best = nearer(best, t, origin, facing);
+            }
             k += 1u;
-        }
-        if (met) {
-            best = nearer(best, t, origin, facing);
-        }
+        } while (k < end);
     }
     return best;
 }
@@ -118,14 +111,18 @@ void main() {
     float facing = side_of_bundle(bundle, at.normal);
     ivec2 cell = ivec2(grid_cell(origin.x), grid_cell(origin.y));
     uint seen = 0u;
-    for (uint left = levels[0]; left != 0u; left &= left - 1u) {
-        uint number = cell_number(cell, uint(findLSB(left)));
-        uint begin = starts[number];
-        uint count = starts[number + 1u] - begin;
-        uint skipped = min(max(first, seen) - seen, count);
-        uint wanted = min(max(last, seen) - seen, count);
-        best = nearest_of(best, begin + skipped, begin + wanted, origin, facing);
-        seen += count;
+    uint left = levels[0];
+    if (left != 0u) {
+        do {
+            uint number = cell_number(cell, uint(findLSB(left)));
+            uint begin = starts[number];
+            uint count = starts[number + 1u] - begin;
+            uint skipped = min(max(first, seen) - seen, count);
+            uint wanted = min(max(last, seen) - seen, count);
+            best = nearest_of(best, begin + skipped, begin + wanted, origin, facing);
+            seen += count;
+            left &= left - 1u;
+        } while (left != 0u);
     }
     if (seen > last) {
         more[0] = skybark_header.y;

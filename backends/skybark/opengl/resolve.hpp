@@ -27,19 +27,14 @@ struct resolve_call {
 inline constexpr std::uint32_t most_sliced_triangles = 1u << 20;
 inline constexpr std::uint32_t most_entries = 25;      ///< of a triangle
 inline constexpr std::uint32_t most_grid_cells = 2048; ///< on a side
-/// Triangles that a sample looks at in the first pass, and in each further one: Mesa's software
-/// rasterisers end the loops of up to 16 invocations after 65,535 rounds that any of them makes.
-inline constexpr std::uint32_t first_tests = 3500;
-inline constexpr std::uint32_t further_tests = 20000;
+/// Triangles that a sample looks at in a pass: Mesa's software rasterisers end loops after 65,535
+/// rounds.
+inline constexpr std::uint32_t most_tests = 60000;
 
 // Bindings of the programs, texture units 0 and 1 besides.
 inline constexpr std::uint32_t resolve_bindings = 0x7ff;
 inline constexpr std::uint32_t corners_unit = 0;
 inline constexpr std::uint32_t entries_unit = 1;
-
-// Of resolve_hits.glsl: flags of the header.
-inline constexpr std::uint32_t counted_flag = 1;
-inline constexpr std::uint32_t unwaiting_flag = 2;
 
 /// The parameters of resolve.glsl.
 struct resolve_parameters {
@@ -181,19 +176,19 @@ inline void bind_texel_buffer(context& c, std::uint32_t unit, gl::handle texture
                          {length_binding, length}});
     };
     clear_words(c, scratch.more);
-    parameters.last = first_tests;
+    parameters.last = most_tests;
     bind_parameters(c, {0, samples, parameters.first_triangle != 0 ? 1u : 0u, 0}, bytes);
     bind_lists({});
     dispatch(c, programs.hits, groups_of(samples));
     while (parameters.last < parameters.triangles) {
         parameters.first = parameters.last;
-        parameters.last += further_tests;
+        parameters.last += most_tests;
         indirect_call arguments;
         arguments.most = samples;
         if (auto done = write_arguments(c, arguments, scratch.more); !done) {
             return done;
         }
-        bind_parameters(c, {0, samples, 1, counted_flag | unwaiting_flag}, bytes);
+        bind_parameters(c, {0, samples, 1, 1}, bytes);
         bind_lists(scratch.more);
         dispatch_indirect(c, programs.hits);
     }

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 9d00948970b09bca509f21738a6b6fe29d1bacf2d5cf402aabb818723f615314
+// sha256 6e4fe49a19b892a3586682edfea5e996801c1a63f779414ea0a1c35049f7734f
 #pragma once
 
 #include <cstdint>
@@ -357,19 +357,38 @@ struct cell_box {
     ivec2 low; // of the finest grid
     ivec2 high;
     uint level;
+    bool beyond; // reaches out of the grids, whose outer cells hold what is there as well
 };
-cell_box cells_of(vec3 a, vec3 b, vec3 c) {
+cell_box cells_of(vec2 a, vec2 b, vec2 c) {
     precise float slack = meeting_slack(bundle);
-    precise vec2 low = min(a.xy, min(b.xy, c.xy)) - slack;
-    precise vec2 high = max(a.xy, max(b.xy, c.xy)) + slack;
+    precise vec2 low = min(a, min(b, c)) - slack;
+    precise vec2 high = max(a, max(b, c)) + slack;
     cell_box box;
     box.low = ivec2(grid_cell(low.x), grid_cell(low.y));
     box.high = ivec2(grid_cell(high.x), grid_cell(high.y));
+    box.beyond = !(min(low.x, low.y) > -bundle.centre.w && max(high.x, high.y) < bundle.centre.w);
     box.level = 0u;
-    while (any(greaterThan((box.high >> box.level) - (box.low >> box.level), ivec2(2)))) {
+    while (any(greaterThan((box.high >> box.level) - (box.low >> box.level), ivec2(4)))) {
         box.level += 1u;
     }
     return box;
+}
+bool may_meet(cell_box box, ivec2 cell, vec2 a, vec2 b, vec2 c) {
+    float width = float(1u << box.level) / scale;
+    vec2 middle = (vec2(cell) + 0.5) * width - bundle.centre.w;
+    float half_width = 0.5 * width + 2.0 * meeting_slack(bundle);
+    vec2 p = a - middle;
+    vec2 q = b - middle;
+    vec2 r = c - middle;
+    vec2 far = max(abs(p), max(abs(q), abs(r))) + half_width;
+    float wrong = 2e-6 * (far.x * far.y);
+    vec3 edges = vec3(q.x * r.y - q.y * r.x, r.x * p.y - r.y * p.x, p.x * q.y - p.y * q.x);
+    vec2 pq = abs(q - p);
+    vec2 qr = abs(r - q);
+    vec2 rp = abs(p - r);
+    vec3 rises = half_width * vec3(qr.x + qr.y, rp.x + rp.y, pq.x + pq.y) + wrong;
+    return box.beyond || all(greaterThanEqual(edges + rises, vec3(0.0))) ||
+           all(lessThanEqual(edges - rises, vec3(0.0)));
 }
 layout(binding = SKYBARK_IMAGE_BINDING) uniform usamplerBuffer corners;
 layout(std430, binding = 4) buffer starts_buffer { uint starts[]; };
@@ -382,12 +401,14 @@ void main() {
     }
     vec4 p = uintBitsToFloat(texelFetch(corners, int(3u * i)));
     vec4 q = uintBitsToFloat(texelFetch(corners, int(3u * i + 1u)));
-    cell_box box = cells_of(vec3(p.xy, 0.0), vec3(p.zw, 0.0), vec3(q.xy, 0.0));
+    cell_box box = cells_of(p.xy, p.zw, q.xy);
     ivec2 step = ivec2(1 << box.level);
     for (int y = box.low.y >> box.level; y <= box.high.y >> box.level; ++y) {
         for (int x = box.low.x >> box.level; x <= box.high.x >> box.level; ++x) {
-            uint cell = cell_number(ivec2(x, y) * step, box.level);
-            entries[atomicAdd(starts[cell + 1u], 1u)] = i;
+            if (may_meet(box, ivec2(x, y), p.xy, p.zw, q.xy)) {
+                uint cell = cell_number(ivec2(x, y) * step, box.level);
+                entries[atomicAdd(starts[cell + 1u], 1u)] = i;
+            }
         }
     }
 }

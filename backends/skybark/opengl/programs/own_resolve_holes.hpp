@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 40a41c929e5d4a3449ceb8115596f8f64cf4de9f20b24f3fd03c292977cf6472
+// sha256 1310793ac1fcb79842252b2b32eca14cbb3663afc97794d7e7e04a0a9ba72dde
 #pragma once
 
 #include <cstdint>
@@ -416,7 +416,7 @@ bool passes(flat_triangle t, vec3 origin) {
     precise float e0 = bx * cy - by * cx;
     precise float e1 = cx * ay - cy * ax;
     precise float e2 = ax * by - ay * bx;
-    return min(e0, min(e1, e2)) >= 0.0 || max(e0, max(e1, e2)) <= 0.0;
+    return (e0 >= 0.0 && e1 >= 0.0 && e2 >= 0.0) || (e0 <= 0.0 && e1 <= 0.0 && e2 <= 0.0);
 }
 gather_hit nearer(gather_hit best, flat_triangle t, vec3 origin, float facing) {
     uvec4 r = texelFetch(corners, int(3u * t.number + 2u));
@@ -437,19 +437,14 @@ gather_hit nearer(gather_hit best, flat_triangle t, vec3 origin, float facing) {
     return best;
 }
 gather_hit nearest_of(gather_hit best, uint k, uint end, vec3 origin, float facing) {
-    while (k < end) {
-        flat_triangle t;
-        bool met = false;
-        bool waits = false;
-        while (k < end && !waits) {
-            t = flat_entry(k);
-            met = passes(t, origin);
-            waits = met || (skybark_header.w & 2u) != 0u;
+    if (k < end) {
+        do {
+            flat_triangle t = flat_entry(k);
+            if (passes(t, origin)) {
+                best = nearer(best, t, origin, facing);
+            }
             k += 1u;
-        }
-        if (met) {
-            best = nearer(best, t, origin, facing);
-        }
+        } while (k < end);
     }
     return best;
 }
@@ -468,14 +463,18 @@ void main() {
     float facing = side_of_bundle(bundle, at.normal);
     ivec2 cell = ivec2(grid_cell(origin.x), grid_cell(origin.y));
     uint seen = 0u;
-    for (uint left = levels[0]; left != 0u; left &= left - 1u) {
-        uint number = cell_number(cell, uint(findLSB(left)));
-        uint begin = starts[number];
-        uint count = starts[number + 1u] - begin;
-        uint skipped = min(max(first, seen) - seen, count);
-        uint wanted = min(max(last, seen) - seen, count);
-        best = nearest_of(best, begin + skipped, begin + wanted, origin, facing);
-        seen += count;
+    uint left = levels[0];
+    if (left != 0u) {
+        do {
+            uint number = cell_number(cell, uint(findLSB(left)));
+            uint begin = starts[number];
+            uint count = starts[number + 1u] - begin;
+            uint skipped = min(max(first, seen) - seen, count);
+            uint wanted = min(max(last, seen) - seen, count);
+            best = nearest_of(best, begin + skipped, begin + wanted, origin, facing);
+            seen += count;
+            left &= left - 1u;
+        } while (left != 0u);
     }
     if (seen > last) {
         more[0] = skybark_header.y;
