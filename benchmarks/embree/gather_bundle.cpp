@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <benchmark/benchmark.h>
-#include <chrono>
 #include <memory>
 
 namespace skybark::benchmarks {
@@ -87,23 +86,22 @@ void run_pass(cpu::device& device, const embree_pass& pass, embree_call call,
     });
 }
 
-/// The call that takes the least time, of the medians of five passes each.
+/// The call that takes the least time of the processor, of the medians of five passes each.
 [[nodiscard]] embree_call fastest_call(cpu::device& device, embree_pass pass,
                                        std::span<gather_hit> hits) {
     embree_call best = embree_call::single;
     double least = 1e30;
     for (const embree_call call : embree_calls) {
-        std::array<double, 5> seconds{};
-        for (std::uint32_t i = 0; i < seconds.size(); ++i) {
+        std::array<double, 5> spent{};
+        for (std::uint32_t i = 0; i < spent.size(); ++i) {
             pass.turn = i;
-            const auto begin = std::chrono::steady_clock::now();
+            const cpu_clock clock;
             run_pass(device, pass, call, hits);
-            seconds[i] =
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+            spent[i] = clock.milliseconds();
         }
-        std::nth_element(seconds.begin(), seconds.begin() + 2, seconds.end());
-        if (seconds[2] < least) {
-            least = seconds[2];
+        std::nth_element(spent.begin(), spent.begin() + 2, spent.end());
+        if (spent[2] < least) {
+            least = spent[2];
             best = call;
         }
     }
