@@ -47,7 +47,7 @@ struct gather_view {
     const float distance = radius / std::sin(std::atan(half_field * std::min(1.0f, aspect)));
     view.target = 0.5f * (low + high);
     view.eye = view.target + distance * glm::normalize(glm::vec3(0.25f, 0.45f, 1.0f));
-    view.nearest = 0.001f * distance;
+    view.nearest = 0.01f * distance;
     return view;
 }
 
