@@ -225,6 +225,13 @@ TEST_F(one_device, a_steady_frame_makes_nothing) {
     const auto corners = must(d.create_buffer(3 * 16));
     const auto pixels = must(d.create_buffer(16 * 16 * 4));
     const auto numbers = must(d.create_buffer(16 * 16 * 4));
+    const auto surfaces = upload(d, std::vector<gather_triangle>(100));
+    const auto points = upload(d, std::vector<gather_sample>(100));
+    const auto hits = must(d.create_buffer(100 * sizeof(gather_hit)));
+    ray_bundle bundle;
+    bundle.centre.w = 1;
+    bundle.up.w = 8;
+    bundle.direction.w = 16;
     const auto frame = [&] {
         go(d, [&](auto& r) {
             r.upload(view<device>(counts), bytes_of(fresh));
@@ -245,6 +252,9 @@ TEST_F(one_device, a_steady_frame_makes_nothing) {
                    peeled_layer<device>{16, 16, view<device>(pixels), view<device>(numbers),
                                         view<device>(record)});
             r.sort(view<device>(values), view<device>(payloads), 20);
+            r.resolve(ray_bundle{},
+                      bundle_work<device>{
+                          view<device>(surfaces), {}, view<device>(points), view<device>(hits)});
         });
     };
     made = 0;

@@ -55,6 +55,8 @@ inline constexpr std::uint64_t bundle_cells_covered = 25;
 } // namespace detail
 
 inline void recorder::resolve(const ray_bundle& bundle, const bundle_work<device>& work) {
+    assert(std::has_single_bit(static_cast<std::uint32_t>(bundle.direction.w)) &&
+           bundle.direction.w <= 2048);
     const slice triangles = bound(work.triangles);
     const slice samples = bound(work.samples);
     const auto count = static_cast<std::uint32_t>(triangles.size / sizeof(gather_triangle));
