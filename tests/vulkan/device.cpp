@@ -252,7 +252,7 @@ TEST_F(one_device, a_steady_frame_makes_nothing) {
                    peeled_layer<device>{16, 16, view<device>(pixels), view<device>(numbers),
                                         view<device>(record)});
             r.sort(view<device>(values), view<device>(payloads), 20);
-            r.resolve(ray_bundle{},
+            r.resolve(bundle,
                       bundle_work<device>{
                           view<device>(surfaces), {}, view<device>(points), view<device>(hits)});
         });
