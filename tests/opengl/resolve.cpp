@@ -232,8 +232,8 @@ TEST_F(resolve_test, crowds_of_different_grids) {
     // loops add up where invocations run as one. Of equal ones the first counts.
     scene s;
     const float places[] = {-50, -30, -10, 10, 30};
-    for (std::uint32_t i = 0; i < 5 * 9000; ++i) {
-        const float z = 1 + static_cast<float>(i * 7919 % 22500) / 22500;
+    for (std::uint32_t i = 0; i < 5 * 15000; ++i) {
+        const float z = 1 + static_cast<float>(i * 7919ull % 37500) / 37500;
         const float size = 0.05f * std::exp2(2 * static_cast<float>(i % 5));
         const float x = places[i % 5];
         s.triangles.push_back({{x - size, -size, z}, 0, {x + size, -size, z}, 0, {x, size, z}, 0});

@@ -471,6 +471,10 @@ class all_patterns {
                                            {-1, 1, 0.5f, 1},  {1, -1, 0.5f, 1},  {1, 1, 0.25f, 1}};
         const buffer sheets = *make_buffer<gpu, glm::vec4>(device_, sheet);
         const buffer layers = *make_buffer<gpu, float>(device_, std::vector<float>(256, 1.0f));
+        const std::vector<gather_triangle> wall{{{-1, -1, 1}, 0, {1, -1, 1}, 0, {0, 1, 1}, 0}};
+        const buffer walls = *make_buffer<gpu, gather_triangle>(device_, wall);
+        const std::vector<gather_sample> eye(2, {{0, 0, 0}, 0, {0, 0, 1}, 0});
+        const buffer eyes = *make_buffer<gpu, gather_sample>(device_, eye);
         after("make_buffer");
         image source = *device_.create_image({2, 2, image_format::rgba8});
         image color = *device_.create_image({4, 4, image_format::rgba8});
@@ -525,6 +529,10 @@ class all_patterns {
         r.peel(probe_peel{}, {view<gpu>(sheets)}, range{0, 2},
                {8, 6, {&layers, 0, 192}, {&layers, 256, 192}, {&layers, 512, 16}});
         after("peel");
+        const ray_bundle bundle{{0, 0, 0, 2}, {1, 0, 0, 0}, {0, 1, 0, 1}, {0, 0, 1, 4}};
+        r.resolve(bundle, {view<gpu>(walls), {}, view<gpu>(eyes), {&layers, 768, 32}});
+        r.resolve(bundle, {view<gpu>(walls), view<gpu>(in), view<gpu>(eyes), {&layers, 800, 32}});
+        after("resolve");
         volume_patterns volumes(device_, after);
         volumes.record(r, color);
         EXPECT_TRUE(device_.submit(r));
