@@ -17,6 +17,7 @@
 #include <io/write_obj.hpp>
 #include <io/write_ply.hpp>
 #include <nlohmann/json.hpp>
+#include <skybark/gather/scene.hpp>
 
 #include <bit>
 #include <cmath>
@@ -350,6 +351,36 @@ result<void> write_lightmap(const gather_job& job, std::span<const glm::vec4> li
     return io::write_exr(job.out, rows, job.lightmap.size, job.lightmap.size);
 }
 
+/// How many patches there are, if none may be longer.
+std::uint64_t patches_of(const std::vector<gather_triangle>& triangles, float patch_size) {
+    std::uint64_t patches = 0;
+    for (const gather_triangle& t : triangles) {
+        const std::uint64_t rows = gather::detail::rows_of(t, patch_size);
+        patches += rows * rows;
+    }
+    return patches;
+}
+
+/// As was asked for; or the finest that has no more than 30,000 patches beside one a triangle.
+float find_patch_size(const gather_job& job) {
+    if (job.options.bounces == 0) {
+        return 0; // surfaces send out what they emit, evenly
+    }
+    if (job.options.patch_size > 0) {
+        return job.options.patch_size;
+    }
+    constexpr std::uint64_t more = 30000;
+    float low = 0;
+    float high = gather::bounds_of(job.triangles).diagonal(); // one patch a triangle
+    for (int i = 0; i < 20; ++i) {
+        const float middle = 0.5f * (low + high);
+        const bool few =
+            middle > 0 && patches_of(job.triangles, middle) <= job.triangles.size() + more;
+        (few ? high : low) = middle;
+    }
+    return high;
+}
+
 } // namespace
 
 float nearly_brightest(std::vector<float> values) {
@@ -367,6 +398,7 @@ result<void> read_gather(gather_job& job) {
         auto read = read_triangles(job);
         return read ? find_places(job) : read;
     });
+    job.patch_size = find_patch_size(job);
     if (done && !job.options.resume.empty()) {
         auto state = io::load_text(job.options.resume);
         if (!state) {
@@ -409,22 +441,6 @@ result<void> write_light(const gather_job& job, std::span<const glm::vec4> light
         return io::write_gathered_ply(job.out, points, light, white, job.mesh);
     }
     return {};
-}
-
-float patch_size_of(const gather_job& job) {
-    if (job.options.bounces == 0) {
-        return 0; // surfaces send out what they emit, evenly
-    }
-    if (job.options.patch_size > 0) {
-        return job.options.patch_size;
-    }
-    constexpr double wanted = 30000;
-    double area = 0;
-    for (const gather_triangle& t : job.triangles) {
-        area += 0.5 * glm::length(glm::cross(glm::dvec3(t.b - t.a), glm::dvec3(t.c - t.a)));
-    }
-    // A triangle of equal legs l and p a patch has 2 l² / p² patches: 4 times its area over p².
-    return static_cast<float>(std::sqrt(4 * area / wanted));
 }
 
 command add_gather_command(CLI::App& to) {

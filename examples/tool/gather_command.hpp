@@ -56,7 +56,7 @@ class light_gatherer {
         what.triangles = job_.triangles;
         what.materials = job_.materials;
         what.alpha = job_.alpha;
-        what.patch_size = patch_size_of(job_);
+        what.patch_size = job_.patch_size;
         auto made = gather::gather_scene<B>::create(device_, what);
         if (!made) {
             return failure(made.error());

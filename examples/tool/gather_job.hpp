@@ -30,7 +30,8 @@ struct gather_job {
     std::vector<glm::vec3> places;         ///< of vertices, whose samples stand a little inwards
     std::vector<glm::uvec3> mesh;          ///< triangles of vertices; empty for other places
     gather::lightmap lightmap;
-    std::string resumed; ///< the state to go on from
+    float patch_size = 0; ///< of the scene, m
+    std::string resumed;  ///< the state to go on from
 
     // Filled by `gather_light`, for the report.
     std::string device;
@@ -54,9 +55,6 @@ struct gather_job {
 /// What is behind the first line of the state that was read, if that says what the job's would.
 /// Errors name the first difference.
 [[nodiscard]] result<std::string_view> state_behind_line(const gather_job& job);
-
-/// The longest edge of patches that cut the triangles' area into about 30,000, or as was asked for.
-[[nodiscard]] float patch_size_of(const gather_job& job);
 
 /// What is nearly the brightest: 99 of 100 are below. For what becomes white.
 [[nodiscard]] float nearly_brightest(std::vector<float> values);

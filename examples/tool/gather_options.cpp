@@ -263,8 +263,8 @@ void add_gather_options(CLI::App& to, gather_option_words& words) {
                   "Axes that each bounce looks along (256)")
         ->type_name("D");
     to.add_option("--patch-size", words.patch_size,
-                  "Of bounces: no patch of a surface that keeps its light is longer, in m (about "
-                  "30000 patches)")
+                  "Of bounces: no patch of a surface that keeps its light is longer, in m (30000 "
+                  "patches more than triangles)")
         ->type_name("M");
     to.add_option("--sky", words.sky, "Radiance of the sky, all around, in W/(m² sr) (0,0,0)")
         ->type_name("R,G,B");

@@ -44,7 +44,7 @@ std::string state_line(const gather_job& job) {
     line += "; bounces " + std::to_string(o.bounces);
     if (o.bounces != 0) {
         line += " of " + std::to_string(o.bounce_directions) + " directions and patches of " +
-                text_of(static_cast<double>(patch_size_of(job))) + " m";
+                text_of(static_cast<double>(job.patch_size)) + " m";
     }
     line += "; sky " + text_of(o.sky);
     line += o.has_sun ? "; sun " + text_of(o.sun_azimuth) + "," + text_of(o.sun_elevation) +
