@@ -32,6 +32,7 @@ inline constexpr std::uint32_t batch_triangles = 1u << 17;
 inline constexpr std::uint32_t most_pieces = 16;
 inline constexpr std::uint32_t least_of_piece = 1024;
 inline constexpr double subpixels = 256;
+inline constexpr std::uint32_t ahead = 8; ///< triangles that are asked for before they are drawn
 
 /// A triangle in pixels, counter-clockwise.
 struct flat_triangle {
@@ -53,8 +54,14 @@ struct pixel_range {
 
     [[nodiscard]] static pixel_range between(double low, double high, std::uint32_t count) {
         const double most = static_cast<double>(count);
-        return {static_cast<std::int32_t>(std::ceil(std::clamp(low - 0.5, 0.0, most))),
-                static_cast<std::int32_t>(std::floor(std::clamp(high - 0.5, -1.0, most - 1.0)))};
+        return {-floor_of(-std::clamp(low - 0.5, 0.0, most)),
+                floor_of(std::clamp(high - 0.5, -1.0, most - 1.0))};
+    }
+
+    /// std::floor calls a library where the machine's own instruction may not be used.
+    [[nodiscard]] static std::int32_t floor_of(double place) {
+        const auto whole = static_cast<std::int32_t>(place);
+        return whole - (static_cast<double>(whole) > place ? 1 : 0);
     }
 };
 
@@ -100,28 +107,42 @@ struct edge {
     double value;
     double step_x;
     double step_y;
-    bool owns; ///< what lies on it
+    double inverse; ///< −1 / step_x
+    bool owns;      ///< what lies on it
 
     [[nodiscard]] static edge between(double x0, double y0, double x1, double y1) {
         const double dx = x1 - x0;
         const double dy = y1 - y0;
-        return {dx * (0.5 - y0) - dy * (0.5 - x0), -dy, dx, dy < 0 || (dy == 0 && dx < 0)};
+        return {dx * (0.5 - y0) - dy * (0.5 - x0), -dy, dx, dy == 0 ? 0 : 1 / dy,
+                dy < 0 || (dy == 0 && dx < 0)};
+    }
+
+    /// Whether a column is inside, in a row whose value this is.
+    [[nodiscard]] bool inside(double here, std::int32_t column) const {
+        const double at = here + step_x * column;
+        return at > 0 || (at == 0 && owns);
     }
 
     /// Keeps the columns of a row that are inside.
-    void clip(std::int32_t row, double& first, double& last) const {
+    void clip(std::int32_t row, std::int32_t& first, std::int32_t& last) const {
+        constexpr double beyond = 1 << 20; // all pictures
         const double here = value + step_y * row;
         if (step_x == 0) {
-            if (here < 0 || (here == 0 && !owns)) {
-                last = first - 1;
-            }
+            last = inside(here, 0) ? last : first - 1;
             return;
         }
-        const double crossing = -here / step_x;
+        const double crossing = std::clamp(here * inverse, -2.0, beyond);
+        std::int32_t column = pixel_range::floor_of(crossing);
+        const double part = crossing - column;
+        // Near a whole column rounding may have put the crossing on its other side.
+        if (part < 1e-6 || part > 1 - 1e-6) {
+            column += part > 0.5 ? 1 : 0;
+            column -= inside(here, column) == (step_x > 0) ? 1 : 0;
+        }
         if (step_x > 0) {
-            first = std::max(first, owns ? std::ceil(crossing) : std::floor(crossing) + 1);
+            first = std::max(first, column + 1);
         } else {
-            last = std::min(last, owns ? std::floor(crossing) : std::ceil(crossing) - 1);
+            last = std::min(last, column);
         }
     }
 };
@@ -132,6 +153,91 @@ struct raster_rows {
     float* depth;
     std::uint32_t* triangle;
 };
+
+/// How a triangle's depth runs over the raster.
+struct depth_plane {
+    double middle; ///< at the first pixel's centre
+    double slope_x;
+    double slope_y;
+    float least; ///< slivers have slopes that rounding drives beyond their corners
+    float most;
+
+    [[nodiscard]] float at(std::int32_t column, std::int32_t row) const {
+        return static_cast<float>(middle + slope_x * column + slope_y * row);
+    }
+};
+
+/// Up to this many rows and columns, edge functions in 1/256 of a pixel are below 2^30.
+inline constexpr std::int32_t small_side = 56;
+inline constexpr std::int32_t some_columns = 8;
+
+/// Draws a small triangle into rows first … last, some columns at a time: all of them are looked
+/// at, so that compilers make vectors of them. `x`, `y`: corners in pixels; columns: of its box.
+inline void draw_small(const std::array<double, 3>& x, const std::array<double, 3>& y,
+                       const depth_plane& plane, std::uint32_t number, raster_size size,
+                       pixel_range columns, std::int32_t first, std::int32_t last,
+                       const raster_rows& to) {
+    const std::int32_t start =
+        std::min(columns.first, static_cast<std::int32_t>(size.width) - some_columns);
+    std::array<std::int32_t, 3> across;
+    std::array<std::int32_t, 3> down;
+    for (std::size_t k = 0; k < 3; ++k) {
+        across[k] = static_cast<std::int32_t>((x[k] - start - 0.5) * subpixels);
+        down[k] = static_cast<std::int32_t>((y[k] - first - 0.5) * subpixels);
+    }
+    std::array<std::int32_t, 3> value;
+    std::array<std::int32_t, 3> step_x;
+    std::array<std::int32_t, 3> step_y;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t from = (k + 1) % 3;
+        const std::size_t until = (k + 2) % 3;
+        const std::int32_t dx = across[until] - across[from];
+        const std::int32_t dy = down[until] - down[from];
+        const bool owns = dy < 0 || (dy == 0 && dx < 0);
+        value[k] = dy * across[from] - dx * down[from] - (owns ? 0 : 1);
+        step_x[k] = -dy * static_cast<std::int32_t>(subpixels);
+        step_y[k] = dx * static_cast<std::int32_t>(subpixels);
+    }
+    std::array<std::int32_t, some_columns> edge_0;
+    std::array<std::int32_t, some_columns> edge_1;
+    std::array<std::int32_t, some_columns> edge_2;
+    std::array<float, some_columns> slope;
+    for (std::int32_t i = 0; i < some_columns; ++i) {
+        const auto n = static_cast<std::size_t>(i);
+        edge_0[n] = step_x[0] * i;
+        edge_1[n] = step_x[1] * i;
+        edge_2[n] = step_x[2] * i;
+        slope[n] = static_cast<float>(plane.slope_x) * static_cast<float>(i);
+    }
+    for (std::int32_t row = first; row <= last; ++row) {
+        for (std::int32_t c = start; c <= columns.last; c += some_columns) {
+            // Columns that come up again at the end of a row, rather than those of the next, don't
+            // count: seen from elsewhere, their depths are rounded otherwise.
+            const std::int32_t column =
+                std::min(c, static_cast<std::int32_t>(size.width) - some_columns);
+            const std::int32_t done = c - column;
+            std::array<std::int32_t, 3> here;
+            for (std::size_t k = 0; k < 3; ++k) {
+                here[k] = value[k] + step_x[k] * (column - start) + step_y[k] * (row - first);
+            }
+            const float middle = plane.at(column, row);
+            const std::size_t at =
+                static_cast<std::size_t>(row) * size.width + static_cast<std::size_t>(column);
+            const float* const before = to.before + at;
+            float* const depth = to.depth + at;
+            std::uint32_t* const triangle = to.triangle + at;
+            for (std::size_t i = 0; i < some_columns; ++i) {
+                const std::int32_t outside = (here[0] + edge_0[i]) | (here[1] + edge_1[i]) |
+                                             (here[2] + edge_2[i]) |
+                                             (static_cast<std::int32_t>(i) - done);
+                const float d = std::min(std::max(middle + slope[i], plane.least), plane.most);
+                const bool takes = (outside >= 0) & (d < before[i]) & (d > depth[i]) & (d <= 1.0f);
+                depth[i] = takes ? d : depth[i];
+                triangle[i] = takes ? number : triangle[i];
+            }
+        }
+    }
+}
 
 /// Draws a triangle into rows first … last.
 inline void draw(const flat_triangle& t, raster_size size, std::int32_t first, std::int32_t last,
@@ -149,29 +255,35 @@ inline void draw(const flat_triangle& t, raster_size size, std::int32_t first, s
         std::swap(z[1], z[2]);
         area = -area;
     }
+    depth_plane plane;
+    plane.slope_x = ((z[1] - z[0]) * (y[2] - y[0]) - (z[2] - z[0]) * (y[1] - y[0])) / area;
+    plane.slope_y = ((z[2] - z[0]) * (x[1] - x[0]) - (z[1] - z[0]) * (x[2] - x[0])) / area;
+    plane.middle = z[0] + plane.slope_x * (0.5 - x[0]) + plane.slope_y * (0.5 - y[0]);
+    plane.least = std::min({t.z[0], t.z[1], t.z[2]});
+    plane.most = std::max({t.z[0], t.z[1], t.z[2]});
+    const pixel_range columns = columns_of(t, size);
+    const auto [lowest, highest] = std::minmax({y[0], y[1], y[2]});
+    const auto [leftmost, rightmost] = std::minmax({x[0], x[1], x[2]});
+    if (size.width >= some_columns &&
+        std::max(highest - lowest, rightmost - leftmost) < small_side) {
+        draw_small(x, y, plane, t.number, size, columns, first, last, to);
+        return;
+    }
     const std::array<edge, 3> edges{edge::between(x[1], y[1], x[2], y[2]),
                                     edge::between(x[2], y[2], x[0], y[0]),
                                     edge::between(x[0], y[0], x[1], y[1])};
-    const double slope_x = ((z[1] - z[0]) * (y[2] - y[0]) - (z[2] - z[0]) * (y[1] - y[0])) / area;
-    const double slope_y = ((z[2] - z[0]) * (x[1] - x[0]) - (z[1] - z[0]) * (x[2] - x[0])) / area;
-    // Slivers have slopes that rounding drives beyond their corners.
-    const float least = std::min({t.z[0], t.z[1], t.z[2]});
-    const float most = std::max({t.z[0], t.z[1], t.z[2]});
-    const pixel_range columns = columns_of(t, size);
     for (std::int32_t row = first; row <= last; ++row) {
-        double from = columns.first;
-        double until = columns.last;
+        std::int32_t left = columns.first;
+        std::int32_t right = columns.last;
         for (const edge& e : edges) {
-            e.clip(row, from, until);
+            e.clip(row, left, right);
         }
-        if (!(from <= until)) {
+        const std::int32_t count = right - left + 1;
+        if (count <= 0) {
             continue;
         }
-        const auto left = static_cast<std::int32_t>(from);
-        const auto count = static_cast<std::int32_t>(until) - left + 1;
-        const auto start =
-            static_cast<float>(z[0] + slope_x * (from + 0.5 - x[0]) + slope_y * (row + 0.5 - y[0]));
-        const auto slope = static_cast<float>(slope_x);
+        const float start = plane.at(left, row);
+        const auto slope = static_cast<float>(plane.slope_x);
         const std::size_t at =
             static_cast<std::size_t>(row) * size.width + static_cast<std::size_t>(left);
         const float* const before = to.before + at;
@@ -179,7 +291,7 @@ inline void draw(const flat_triangle& t, raster_size size, std::int32_t first, s
         std::uint32_t* const triangle = to.triangle + at;
         for (std::int32_t i = 0; i < count; ++i) {
             const float here = start + slope * static_cast<float>(i);
-            const float d = std::min(std::max(here, least), most);
+            const float d = std::min(std::max(here, plane.least), plane.most);
             const bool takes = d < before[i] && d > depth[i] && d <= 1.0f;
             depth[i] = takes ? d : depth[i];
             triangle[i] = takes ? t.number : triangle[i];
@@ -290,8 +402,9 @@ template <class Device, peel_kernel K, class... Spans>
         device.parallel(bands, [&](std::uint32_t band) {
             const auto first = static_cast<std::int32_t>(band * band_rows);
             const auto last = static_cast<std::int32_t>(band * band_rows + band_rows - 1);
-            for (std::uint32_t e = band == 0 ? 0 : lists.ends[band - 1]; e < lists.ends[band];
-                 ++e) {
+            const std::uint32_t end = lists.ends[band];
+            for (std::uint32_t e = band == 0 ? 0 : lists.ends[band - 1]; e < end; ++e) {
+                detail::fetch(&lists.triangles[lists.entries[std::min(e + ahead, end - 1)]]);
                 const flat_triangle& t = lists.triangles[lists.entries[e]];
                 const pixel_range its = rows_of(t, size);
                 draw(t, size, std::max(its.first, first), std::min(its.last, last), rows);
