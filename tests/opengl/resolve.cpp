@@ -228,12 +228,13 @@ TEST_F(resolve_test, holes_are_seen_through) {
 }
 
 TEST_F(resolve_test, crowds_of_different_grids) {
-    // More triangles in a cell than a pass looks at, and neighbours that look at others: turns of
-    // loops add up where invocations run as one. Of equal ones the first counts.
+    // More triangles in a cell than a pass looks at, the nearest last, and neighbours that look at
+    // others: turns of loops add up where invocations run as one. Of equal ones the first counts.
     scene s;
     const float places[] = {-50, -30, -10, 10, 30};
-    for (std::uint32_t i = 0; i < 5 * 15000; ++i) {
-        const float z = 1 + static_cast<float>(i * 7919ull % 37500) / 37500;
+    for (std::uint32_t i = 0; i < 5 * 18000; ++i) {
+        const float off = static_cast<float>(i / 20 * 20) / 180000; // fours of equal ones
+        const float z = i / 5 % 2 == 0 ? 1.5f - off : 1.5f + off;
         const float size = 0.05f * std::exp2(2 * static_cast<float>(i % 5));
         const float x = places[i % 5];
         s.triangles.push_back({{x - size, -size, z}, 0, {x + size, -size, z}, 0, {x, size, z}, 0});
