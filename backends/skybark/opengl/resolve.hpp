@@ -27,8 +27,8 @@ struct resolve_call {
 inline constexpr std::uint32_t most_sliced_triangles = 1u << 20;
 inline constexpr std::uint32_t most_entries = 25;      ///< of a triangle
 inline constexpr std::uint32_t most_grid_cells = 2048; ///< on a side
-/// Triangles that a sample looks at in a pass: Mesa's software rasterisers end the loops of up to 16
-/// invocations after 65,535 rounds that any of them makes.
+/// Triangles that a sample looks at in a pass: Mesa's software rasterisers end the loops of up to
+/// 16 invocations after 65,535 rounds that any of them makes.
 inline constexpr std::uint32_t most_tests = 4000;
 
 // Bindings of the programs, texture units 0 and 1 besides.
