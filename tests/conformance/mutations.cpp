@@ -77,9 +77,11 @@ enum class fault {
     keeps_peeled_depths,
     peels_first_triangles,
     counts_all_pixels,
+    numbers_in_16_bits,
     loses_rays_against,
     fuses_edges,
     drops_last_triangle,
+    stops_at_65535_triangles,
     prefers_later_triangles,
     ignores_holes,
     ignores_lift,
@@ -579,6 +581,10 @@ class mutant_recorder {
             for (std::size_t i = 0; i < depth.size(); ++i) {
                 depth[i] = depth[i] == 0 ? before[i] : depth[i];
             }
+        } else if (which_ == fault::numbers_in_16_bits) {
+            for (std::uint32_t& number : words_of<std::uint32_t>(layer.triangle)) {
+                number = number == no_surface ? number : number & 0xffff;
+            }
         } else if (which_ == fault::counts_all_pixels) {
             words_of<std::uint32_t>(layer.count)[1] = layer.width * layer.height;
         }
@@ -592,6 +598,8 @@ class mutant_recorder {
         const auto hits = words_of<gather_hit>(work.hits);
         if (which_ == fault::drops_last_triangle && !triangles.empty()) {
             to.triangles.size -= sizeof(gather_triangle);
+        } else if (which_ == fault::stops_at_65535_triangles) {
+            to.triangles.size = std::min(to.triangles.size, 65535 * sizeof(gather_triangle));
         } else if (which_ == fault::ignores_lift) {
             bundle.right.w = 0;
         }
@@ -1009,6 +1017,7 @@ const mutation all_mutations[] = {
     {fault::keeps_peeled_depths, "keeps_peeled_depths", {"peel.nothing", "peel.one"}},
     {fault::peels_first_triangles, "peels_first_triangles", {"peel.part"}},
     {fault::counts_all_pixels, "counts_all_pixels", {"peel.nothing", "peel.one"}},
+    {fault::numbers_in_16_bits, "numbers_in_16_bits", {"peel.many"}},
     {fault::loses_rays_against,
      "loses_rays_against",
      {"resolve.fused_planes", "resolve.fused_random", "resolve.same_mesh"}},
@@ -1016,6 +1025,7 @@ const mutation all_mutations[] = {
     {fault::drops_last_triangle,
      "drops_last_triangle",
      {"resolve.fused_sizes", "resolve.fused_shared_edges"}},
+    {fault::stops_at_65535_triangles, "stops_at_65535_triangles", {"resolve.fused_crowd_many"}},
     {fault::prefers_later_triangles,
      "prefers_later_triangles",
      {"resolve.fused_duplicates", "resolve.fused_shared_edges"}},
