@@ -82,30 +82,48 @@ void kernel_map(uint i) {
     float y = bundle_cells(bundle, origin.y);
     uint last = first + count;
     uint seen = 0u;
+    // One loop over all triangles around the sample, run by run, so that a software rasteriser
+    // counts no more turns than the longest way of the invocations that it runs as one has. Loops
+    // in loops would add up the longest of each run, and end before all had been seen.
+    uint next_base = 0u;
+    uint next_side = uint(bundle.direction.w);
+    float next_share = 1.0;
     uint base = 0u;
-    float share = 1.0;
-    for (uint side_cells = uint(bundle.direction.w); side_cells > 0u; side_cells = side_cells / 2u) {
-        int n = int(side_cells);
-        uint next = base + side_cells * side_cells;
-        if (starts[base] != starts[next]) {
-            int column = cell_within(x * share, n);
-            int row = cell_within(y * share, n);
-            int left = max(column - 1, 0);
-            int right = min(column + 1, n - 1);
-            int top = min(row + 1, n - 1);
-            for (int r = max(row - 1, 0); r <= top; ++r) {
-                uint begin = starts[base + uint(r * n + left)];
-                uint end = starts[base + uint(r * n + right) + 1u];
-                uint skipped = min(max(first, seen) - seen, end - begin);
-                uint wanted = min(max(last, seen) - seen, end - begin);
-                for (uint k = begin + skipped; k < begin + wanted; ++k) {
-                    best = nearer(best, k, origin, side);
-                }
-                seen += end - begin;
-            }
+    int n = 0;
+    int left = 0;
+    int right = 0;
+    int row = 0;
+    int top = -1;
+    uint k = 0u;
+    uint end = 0u;
+    do {
+        if (k >= end && row > top) { // the next grid
+            base = next_base;
+            n = int(next_side);
+            int column = cell_within(x * next_share, n);
+            int middle = cell_within(y * next_share, n);
+            left = max(column - 1, 0);
+            right = min(column + 1, n - 1);
+            row = max(middle - 1, 0);
+            top = min(middle + 1, n - 1);
+            next_base += next_side * next_side;
+            // None of its rows, where it has no triangles.
+            row = starts[base] == starts[next_base] ? top + 1 : row;
+            next_side /= 2u;
+            next_share *= 0.5;
         }
-        base = next;
-        share *= 0.5;
-    }
+        if (k >= end && row <= top) { // the next row
+            uint run = starts[base + uint(row * n + left)];
+            uint run_end = starts[base + uint(row * n + right) + 1u];
+            k = run + min(max(first, seen) - seen, run_end - run);
+            end = run + min(max(last, seen) - seen, run_end - run);
+            seen += run_end - run;
+            ++row;
+        }
+        if (k < end) {
+            best = nearer(best, k, origin, side);
+            ++k;
+        }
+    } while (k < end || row <= top || next_side > 0u);
     hits[i] = best;
 }
