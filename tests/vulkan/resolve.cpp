@@ -3,6 +3,7 @@
 #include "support.hpp"
 
 #include <skybark/gather/bundle.hpp>
+#include <skybark/gather/bundle_resolver.hpp>
 #include <skybark/shared/alpha_map.hpp>
 #include <skybark/shared/bundle.hpp>
 
@@ -270,6 +271,44 @@ TEST_P(resolving, neighbours_in_crowds_of_different_grids) {
             {{places[i % 5], 0, i < 32 ? 0.0f : 3.0f}, 0, {0, 0, i < 32 ? 1.0f : -1.0f}, 0});
     }
     EXPECT_EQ(check(s, bundle_of(s, 2048, {0, 0, 1})), 64u);
+}
+
+TEST_P(resolving, composed_neighbours_of_one_crowd_add_up_no_turns) {
+    // The crowd is in the first, second or third row of cells around a sample: 120,000 turns, were
+    // the rows looped over one after the other by all that run as one.
+    scene s;
+    const std::uint32_t crowd = 40000;
+    for (std::uint32_t i = 0; i < crowd; ++i) {
+        const float z = 1 + static_cast<float>((i * 7919) % crowd) / crowd;
+        s.surfaces.push_back({{-1.1f, -1.1f, z}, 0, {1.1f, -1.1f, z}, 0, {0, 1.2f, z}, 0});
+    }
+    s.surfaces.push_back({{-64, -64, 5}, 0, {64, -64, 5}, 0, {0, 64, 5}, 0});
+    for (int i = 0; i < 64; ++i) {
+        s.points.push_back(
+            {{0.01f * static_cast<float>(i % 8), 1.1f * static_cast<float>(i % 3 - 1), 0},
+             0,
+             {0, 0, 1},
+             0});
+    }
+    gather::resolver_options options;
+    options.route = gather::resolve_route::composed;
+    options.cells = 128;
+    auto resolver =
+        must(gather::bundle_resolver<device>::create(gpu(), s.surfaces.size(), options));
+    const ray_bundle bundle = bundle_of(s, 128, {0, 0, 1});
+    const auto surfaces = upload(gpu(), s.surfaces);
+    const auto points = upload(gpu(), s.points);
+    const auto hits = must(gpu().create_buffer(64 * sizeof(gather_hit)));
+    go(gpu(), [&](auto& r) {
+        resolver.record(r, bundle,
+                        {view<device>(surfaces), {}, view<device>(points), view<device>(hits)});
+    });
+    const auto expected = by_looking_at_all(s, bundle);
+    const auto got = download<gather_hit>(gpu(), hits, 64);
+    for (std::size_t i = 0; i < 64; ++i) {
+        EXPECT_EQ(got[i].surface, expected[i].surface) << i;
+        EXPECT_EQ(got[i].distance, expected[i].distance) << i;
+    }
 }
 
 TEST_P(resolving, bad_triangles_and_samples_meet_nothing) {
