@@ -10,6 +10,7 @@
 #include <scenes/cornell.hpp>
 #include <scenes/samples.hpp>
 #include <skybark/conformance/null_backend.hpp>
+#include <skybark/core/validated.hpp>
 
 #include <cstring>
 #include <gtest/gtest.h>
@@ -591,6 +592,40 @@ TEST(final_gather, finds_what_every_ray_against_every_triangle_finds) {
     }
     RecordProperty("worst", std::to_string(worst));
     EXPECT_LT(worst, 2e-6); // 48 rounded sums; no ray on this box is so close to an edge
+}
+
+/// In parts or whole, peeled, and with bounces before it: nothing that validated<B> minds.
+TEST(final_gather, keeps_the_backends_contract) {
+    using checked = validated<cpu::device>;
+    cpu::device_options small;
+    small.limits.max_buffer_bytes = 64 * 8 * 16;
+    cpu::device inner(std::move(small));
+    std::vector<std::string> misuse;
+    checked device(inner, [&](std::string_view sentence) { misuse.emplace_back(sentence); });
+    const lit_box box;
+    const auto scene = support::make_scene(device, support::describe(box.scene));
+    gather::bounce_options bounces;
+    bounces.axes = 3;
+    auto light = gather::bounced_light<checked>::create(device, scene, bounces);
+    ASSERT_TRUE(light);
+    light->light_from(vec3(0, 1, 1), vec3(1));
+    ASSERT_TRUE(light->bounce(2));
+    for (const auto method : {gather::gather_method::resolve, gather::gather_method::peel}) {
+        final_gather_options options = lit_box::options();
+        options.directional = true;
+        options.method = method;
+        options.peeler.size = 32;
+        auto gather = support::make_gather(device, scene, std::span(box.samples), options);
+        ASSERT_TRUE(gather.add(3));
+        ASSERT_TRUE(gather.light_from(vec3(0, 1, 1), vec3(1)));
+        ASSERT_EQ(support::read(gather).size(), box.samples.size());
+        const auto state = gather.save();
+        ASSERT_TRUE(state);
+        ASSERT_TRUE(gather.resume(*state));
+        ASSERT_TRUE(gather.restart(3));
+        ASSERT_TRUE(gather.add_until(1, 10));
+    }
+    EXPECT_TRUE(misuse.empty()) << misuse.front();
 }
 
 /// Four million samples: a grid on the ground of a small scene, each with the light of its own

@@ -21,6 +21,9 @@
 // number of threads, any split into calls of `add`, and for a gather that was saved and resumed.
 //
 // Samples that are no numbers, and those without a normal, get no light and disturb no other.
+// Rays begin off the surface by the scene's lift, along the normal: that keeps them from their own
+// surface, but on the very edge of a room's wall rounding decides on which side of the next wall a
+// sample is. Samples that stand on corners of the scene belong a little inside of their triangle.
 
 #include <skybark/core/backend.hpp>
 #include <skybark/gather/bundle_peeler.hpp>
