@@ -3,8 +3,8 @@
 //
 //   --draft        an eighth of the directions, a quarter of the places
 //   box            the box, four bounces: colour bleeds from its walls
-//   box_error      what a gather says of its own error, and what the error is
 //   park           balls and boxes under a sky: direct light, and with three bounces
+//   park_error     what a gather says of its own error, and what the error is
 //   tree           a tree in the sun on a white floor: light that has come through leaves
 
 #include <io/write_png.hpp>
@@ -221,24 +221,59 @@ result<void> draw_box(studio& in) {
     return in.draw("gather_box", whole, *found, 0.9f);
 }
 
-result<void> draw_box_error(studio& in) {
-    const scenes::gather_scene box = scenes::cornell();
-    shot few = box_shot(box);
-    few.view.width = few.view.height = 320;
+shot park_shot(const scenes::gather_scene& park) {
+    shot made;
+    made.scene.triangles = park.triangles;
+    made.scene.materials = park.materials;
+    made.sky = clear_sky;
+    made.view.eye = {4.0f, 6.2f, 12.0f};
+    made.view.target = {0, 0.1f, 0.8f};
+    made.view.field_of_view = 33;
+    made.view.nearest = 2;
+    made.view.width = 720;
+    made.view.height = 480;
+    made.axes = 384;
+    return made;
+}
+
+result<void> draw_park(studio& in) {
+    const scenes::gather_scene park = scenes::park();
+    shot of = in.set(park_shot(park));
+    const auto direct = in.light(of);
+    if (!direct) {
+        return skybark::failure(direct.error());
+    }
+    auto done = in.draw("gather_park_direct", of, *direct, 0.8f);
+    if (!done) {
+        return done;
+    }
+    of.bounces = 3;
+    const auto bounced = in.light(of, &direct->places);
+    if (!bounced) {
+        return skybark::failure(bounced.error());
+    }
+    return in.draw("gather_park", of, *bounced, 0.8f);
+}
+
+result<void> draw_park_error(studio& in) {
+    const scenes::gather_scene park = scenes::park();
+    shot few = park_shot(park);
+    few.view.width = 450;
+    few.view.height = 300;
     few.view.supersampling = 1;
-    few.axes = 512;
+    few.axes = 128;
     few = in.set(few);
-    shot many = few;
     const auto coarse = in.light(few);
     if (!coarse) {
         return skybark::failure(coarse.error());
     }
-    many.axes *= 32;
+    shot many = few;
+    many.axes *= 24;
     const auto fine = in.light(many, &coarse->places);
     if (!fine) {
         return skybark::failure(fine.error());
     }
-    constexpr float most = 0.2f; // of the light
+    constexpr float most = 0.05f; // of the light
     std::vector<float> said(coarse->irradiance.size());
     std::vector<float> is(said.size());
     for (std::size_t i = 0; i < said.size(); ++i) {
@@ -249,39 +284,9 @@ result<void> draw_box_error(studio& in) {
         said[i] = coarse->irradiance[i].w / light / most;
         is[i] = std::abs(luminance(coarse->irradiance[i]) - light) / light / most;
     }
-    return in.draw("gather_box_few", few, *coarse, 0.9f)
-        .and_then([&] { return in.draw_values("gather_error_said", few, coarse->places, said); })
-        .and_then([&] { return in.draw_values("gather_error_is", few, coarse->places, is); });
-}
-
-result<void> draw_park(studio& in) {
-    const scenes::gather_scene park = scenes::park();
-    shot of;
-    of.scene.triangles = park.triangles;
-    of.scene.materials = park.materials;
-    of.sky = clear_sky;
-    of.view.eye = {4.0f, 6.2f, 12.0f};
-    of.view.target = {0, 0.1f, 0.8f};
-    of.view.field_of_view = 33;
-    of.view.nearest = 2;
-    of.view.width = 720;
-    of.view.height = 480;
-    of.axes = 384;
-    of = in.set(of);
-    const auto direct = in.light(of);
-    if (!direct) {
-        return skybark::failure(direct.error());
-    }
-    auto done = in.draw("gather_park_direct", of, *direct, 1.0f);
-    if (!done) {
-        return done;
-    }
-    of.bounces = 3;
-    const auto bounced = in.light(of, &direct->places);
-    if (!bounced) {
-        return skybark::failure(bounced.error());
-    }
-    return in.draw("gather_park", of, *bounced, 1.0f);
+    return in.draw_values("gather_error_said", few, coarse->places, said).and_then([&] {
+        return in.draw_values("gather_error_is", few, coarse->places, is);
+    });
 }
 
 result<void> draw_tree(studio& in) {
@@ -298,7 +303,7 @@ result<void> draw_tree(studio& in) {
         return skybark::failure(wood.error());
     }
     trees::leaf_options leaves = trees::leaves_of(species);
-    leaves.most = 4'500;
+    leaves.most = 1'300;
     leaves.length = 0.2f;
     const auto placed = trees::place_leaves(*wood, leaves);
     trees::swaying_tree<backend>::options_type options;
@@ -314,10 +319,10 @@ result<void> draw_tree(studio& in) {
         return skybark::failure(surfaces.error());
     }
     auto& around = surfaces->surroundings();
-    scenes::add_ground(around, scenes::add_paint(around, glm::vec3(0.75f)), 12, 96);
+    scenes::add_ground(around, scenes::add_paint(around, glm::vec3(0.5f)), 12, 96);
     shot of;
     of.scene = surfaces->describe();
-    of.sky = [](glm::vec3 from) { return 0.3f * clear_sky(from); };
+    of.sky = [](glm::vec3 from) { return 0.15f * clear_sky(from); };
     of.sun.towards = glm::normalize(glm::vec3(0.35f, 0.9f, 0.3f));
     of.sun.irradiance = glm::vec3(14, 13, 11.5f);
     const gather::bounds box =
@@ -326,8 +331,8 @@ result<void> draw_tree(studio& in) {
                 static_cast<double>(box.low.x), static_cast<double>(box.low.y),
                 static_cast<double>(box.low.z), static_cast<double>(box.high.x),
                 static_cast<double>(box.high.y), static_cast<double>(box.high.z));
-    of.view.eye = {1.2f, 2.0f, 6.5f};
-    of.view.target = {-0.2f, 0.14f * box.high.y, 0};
+    of.view.eye = {-1.6f, 2.4f, 6.0f};
+    of.view.target = {-0.5f, 0.12f * box.high.y, 0};
     of.view.field_of_view = 36;
     of.view.nearest = 1;
     of.view.width = 480;
@@ -340,7 +345,7 @@ result<void> draw_tree(studio& in) {
     if (!found) {
         return skybark::failure(found.error());
     }
-    return in.draw("gather_tree", of, *found, 0.5f);
+    return in.draw("gather_tree", of, *found, 0.6f);
 }
 
 struct entry {
@@ -348,7 +353,7 @@ struct entry {
     result<void> (*draw)(studio&);
 };
 constexpr entry entries[] = {
-    {"box", draw_box}, {"box_error", draw_box_error}, {"park", draw_park}, {"tree", draw_tree}};
+    {"box", draw_box}, {"park", draw_park}, {"park_error", draw_park_error}, {"tree", draw_tree}};
 
 } // namespace
 
