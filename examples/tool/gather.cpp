@@ -21,6 +21,7 @@
 
 #include <bit>
 #include <cmath>
+#include <unistd.h>
 
 namespace skybark::tool {
 
@@ -271,7 +272,43 @@ result<void> read_triangles(gather_job& job) {
     return add_holes(job, *scene);
 }
 
+/// Bytes of this machine's memory, or what this process may have of it.
+std::uint64_t machine_memory() {
+    const long pages = ::sysconf(_SC_PHYS_PAGES);
+    const long page = ::sysconf(_SC_PAGESIZE);
+    std::uint64_t bytes = pages > 0 && page > 0
+                              ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page)
+                              : std::uint64_t{1} << 34u;
+    const auto limit = io::load_start("/sys/fs/cgroup/memory.max", 24);
+    if (limit) {
+        const auto allowed = io::parse_integer(io::trimmed(limit->substr(0, limit->find('\n'))));
+        bytes =
+            allowed && *allowed > 0 ? std::min(bytes, static_cast<std::uint64_t>(*allowed)) : bytes;
+    }
+    return bytes;
+}
+
+/// What a point takes, on a device that shares the host's memory: 176 bytes there, some here.
+constexpr std::uint64_t bytes_a_point = 320;
+
+/// Said before it is taken: a process that asks for too much is ended without a word.
+result<void> check_memory(std::uint64_t points) {
+    const std::uint64_t memory = machine_memory();
+    if (points > memory / bytes_a_point) {
+        return fail(error_code::out_of_memory,
+                    "Light at " + std::to_string(points) + " points takes about " +
+                        std::to_string(points * bytes_a_point >> 20u) +
+                        " MiB of memory; expected at most the " + std::to_string(memory >> 20u) +
+                        " MiB that there are.");
+    }
+    return {};
+}
+
 result<void> find_places(gather_job& job) {
+    if (job.options.places == gather_places::pixels) {
+        const std::uint64_t samples = job.options.supersampling;
+        return check_memory(samples * samples * job.common.width * job.common.height);
+    }
     if (job.options.places == gather_places::points) {
         auto points = io::read_gather_points(job.options.points);
         if (!points) {
@@ -280,12 +317,13 @@ result<void> find_places(gather_job& job) {
         job.samples = std::move(*points);
     }
     if (job.options.places == gather_places::texels) {
-        auto map = gather::make_lightmap(job.triangles, {job.options.lightmap, 0});
+        const std::uint64_t most = machine_memory() / bytes_a_point;
+        auto map = gather::make_lightmap(job.triangles, {job.options.lightmap, 0, most});
         if (!map) {
             return fail(map.error().code, io::in_quotes(job.input) + ": " + map.error().message);
         }
         job.lightmap = std::move(*map);
-        job.samples = job.lightmap.samples;
+        job.samples = std::move(job.lightmap.samples);
     }
     if (job.options.places == gather_places::vertices) {
         const float lift = gather::default_lift(gather::bounds_of(job.triangles));
@@ -299,7 +337,7 @@ result<void> find_places(gather_job& job) {
                                                    "are without area; expected one that has some.");
         }
     }
-    return {};
+    return check_memory(job.samples.size());
 }
 
 // ---- What comes out ----------------------------------------------------------------------------

@@ -461,6 +461,16 @@ TEST_F(tool_gather, names_what_is_wrong_with_files) {
     expect_failed("lamp.obj", {"--stats", in_folder("nowhere/s")}, {"nowhere", "folder"});
 }
 
+// What no machine has is refused before it is asked for.
+TEST_F(tool_gather, names_what_needs_too_much_memory) {
+    expect_failed("lamp.obj", {"--size", "16384x16384", "--supersampling", "8"},
+                  {"17179869184 points", "MiB"}, "a.png");
+    if (skybark::io::has_exr()) {
+        expect_failed("lamp.obj", {"--lightmap", "32768"}, {"lightmap of 32768", "points"},
+                      "a.exr");
+    }
+}
+
 TEST_F(tool_gather, names_what_is_wrong_with_words) {
     const auto refused = [&](const std::string& scene, const std::string& out, words more,
                              const words& parts) {

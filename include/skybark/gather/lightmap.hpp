@@ -32,6 +32,8 @@ struct lightmap_options {
     std::uint32_t size = 1024; ///< texels a side
     /// How many texels a metre of surface has; 0: as many as fit.
     float texels_per_metre = 0;
+    /// More samples than these are refused before any memory is taken for them.
+    std::uint64_t most_samples = std::uint64_t{1} << 28;
 };
 
 /// Where the light of triangles is kept, and where it is asked for.
@@ -395,7 +397,8 @@ class chart_sampler {
 /// gives the same map on every machine that computes doubles as IEEE 754 has it.
 ///
 /// Errors (`bad_input`): no triangle with an area; a corner that isn't finite; a size of 0 or more
-/// than 32,768; charts that don't fit, with the size that would hold them.
+/// than 32,768; charts that don't fit, with the size that would hold them. `out_of_memory`: more
+/// than options.most_samples, by the triangles' area.
 [[nodiscard]] inline result<lightmap> make_lightmap(std::span<const gather_triangle> triangles,
                                                     const lightmap_options& options = {}) {
     constexpr std::uint32_t largest = 32768;
@@ -452,6 +455,14 @@ class chart_sampler {
                         (packer.pack(wanted, enough) ? std::to_string(enough)
                                                      : std::string("fewer triangles")) +
                         (options.texels_per_metre > 0 ? " or fewer texels a metre." : "."));
+    }
+    const double samples = area * *scale * *scale;
+    if (samples > static_cast<double>(options.most_samples)) {
+        return fail(error_code::out_of_memory,
+                    "A lightmap of " + std::to_string(options.size) +
+                        " texels a side asks for light at about " +
+                        std::to_string(static_cast<std::uint64_t>(samples)) + " points; at most " +
+                        std::to_string(options.most_samples) + " are allowed.");
     }
     lightmap map;
     map.size = options.size;
