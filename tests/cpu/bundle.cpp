@@ -213,6 +213,25 @@ TEST(bundle, chooses_the_lowest_of_triangles_in_one_plane) {
     EXPECT_GT(expect_same_bits(s, box, 9), 10'000u);
 }
 
+TEST(bundle, chooses_the_lowest_of_neighbours_in_one_plane) {
+    random_source random(22);
+    scene s;
+    glm::vec3 middle(0);
+    for (int i = 0; i < 20'000; ++i) {
+        middle = i % 16 == 0 ? vector(random) : middle; // many over each other, one after another
+        gather_triangle t = triangle(middle + vector(random, 0.03), middle + vector(random, 0.03),
+                                     middle + vector(random, 0.03));
+        t.a.z = t.b.z = t.c.z = 0;
+        s.triangles.push_back(t);
+    }
+    for (int i = 0; i < 10'000; ++i) {
+        s.samples.push_back(sample(vector(random), {0, 0, i % 2 == 0 ? 1 : -1}));
+    }
+    gather::bounds box = gather::bounds_of(s.triangles);
+    box.add({0, 0, 1});
+    EXPECT_GT(expect_same_bits(s, box, 23, 2), 2000u);
+}
+
 TEST(bundle, looks_through_holes) {
     random_source random(10);
     scene s = random_scene(11, 3000, 20'000, 0.5);
@@ -266,6 +285,12 @@ TEST(bundle, meets_triangles_that_are_none) {
         s.samples.push_back(sample(a, glm::vec3(random.direction())));
         s.samples.push_back(sample(a + 0.25f * step, glm::vec3(random.direction())));
         s.samples.push_back(sample(a + 1.5f * step, glm::vec3(random.direction())));
+        // A little beyond the ends of lines, where rounding alone says what is inside.
+        for (int k = 0; k < 10; ++k) {
+            const auto beyond = static_cast<float>(random.between(0, 0.01));
+            s.samples.push_back(sample(k % 2 == 0 ? a - beyond * step : a + (1 + beyond) * step,
+                                       glm::vec3(random.direction())));
+        }
     }
     for (const float odd : {nan, infinite, -infinite, huge, -huge, 1e30f, 1e10f, 1e4f}) {
         for (int k = 0; k < 9; ++k) {
