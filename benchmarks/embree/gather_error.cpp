@@ -239,6 +239,26 @@ struct seed_sums {
     double seconds = 0;
 };
 
+/// The power of the directions that the error falls with, from eight axes a replicate on: by least
+/// squares of the logarithms.
+void print_exponent(const std::map<std::uint32_t, seed_sums>& sums) {
+    double n = 0;
+    glm::dvec2 sum(0);
+    double squares = 0;
+    double products = 0;
+    for (auto at = sums.lower_bound(64); at != sums.end(); ++at) {
+        const glm::dvec2 p(std::log(at->first), 0.5 * std::log(at->second.squares));
+        ++n;
+        sum += p;
+        squares += p.x * p.x;
+        products += p.x * p.y;
+    }
+    if (n > 1) {
+        std::fprintf(stderr, "final_gather's error falls with the power %.2f of the directions.\n",
+                     (n * products - sum.x * sum.y) / (n * squares - sum.x * sum.x));
+    }
+}
+
 [[nodiscard]] result<void> measure_final_gather(cpu::device& device, const comparison& c,
                                                 std::uint32_t most, const table& out) {
     constexpr std::uint64_t seeds = 4;
@@ -279,6 +299,7 @@ struct seed_sums {
             sums[axes].seconds += seconds / seeds;
         }
     }
+    print_exponent(sums);
     for (const auto& [axes, sum] : sums) {
         out.row("final_gather", axes, c.work->samples.size(), sum.seconds, std::sqrt(sum.squares));
     }

@@ -7,7 +7,8 @@
 namespace skybark::scenes {
 
 /// 36 triangles, 5.5 m a side; the floor's middle is the origin. Red on the left (−X), green on the
-/// right.
+/// right. The boxes stand a centimetre deep in the floor: of faces at one place, rounding would
+/// choose.
 [[nodiscard]] inline gather_scene cornell() {
     gather_scene scene;
     scene.name = "cornell";
@@ -26,8 +27,8 @@ namespace skybark::scenes {
     add_quad(scene, white, {-h, 0, -h}, {h, 0, -h}, {h, top, -h}, {-h, top, -h});   // back
     add_quad(scene, red, {-h, 0, h}, {-h, 0, -h}, {-h, top, -h}, {-h, top, h});     // left
     add_quad(scene, green, {h, 0, -h}, {h, 0, h}, {h, top, h}, {h, top, -h});       // right
-    add_box(scene, white, {-0.9f, 1.65f, -0.75f}, {0.82f, 1.65f, 0.82f}, 0.3f);     // tall
-    add_box(scene, white, {0.95f, 0.825f, 1.05f}, {0.82f, 0.825f, 0.82f}, -0.29f);  // short
+    add_box(scene, white, {-0.9f, 1.64f, -0.75f}, {0.82f, 1.65f, 0.82f}, 0.3f);     // tall
+    add_box(scene, white, {0.95f, 0.815f, 1.05f}, {0.82f, 0.825f, 0.82f}, -0.29f);  // short
     const float under = top - 0.01f;
     add_quad(scene, light, {-0.65f, under, -0.52f}, {0.65f, under, -0.52f}, {0.65f, under, 0.53f},
              {-0.65f, under, 0.53f});

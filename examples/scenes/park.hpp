@@ -9,8 +9,9 @@ namespace skybark::scenes {
 inline constexpr int park_ground_quads = 120; ///< on a side
 inline constexpr std::uint32_t park_ground_triangles = 2 * park_ground_quads * park_ground_quads;
 
-/// 202,560 triangles: 20 m of ground, 60 spheres on and above it, 40 boxes. The ground is the first
-/// park_ground_triangles of them.
+/// 202,560 triangles: 20 m of ground, 60 spheres on and above it, 40 boxes a centimetre deep in it
+/// (of faces at one place, rounding would choose). The ground is the first park_ground_triangles of
+/// them.
 [[nodiscard]] inline gather_scene park() {
     gather_scene scene;
     scene.name = "park";
@@ -36,7 +37,7 @@ inline constexpr std::uint32_t park_ground_triangles = 2 * park_ground_quads * p
         const float width = random.between(0.2f, 0.8f);
         const float depth = random.between(0.2f, 0.8f);
         const float turn = random.between(0, 6.2831853f);
-        add_box(scene, stone, {x, 0.6f, z}, {width, 0.6f, depth}, turn);
+        add_box(scene, stone, {x, 0.59f, z}, {width, 0.6f, depth}, turn);
     }
     return scene;
 }
