@@ -52,7 +52,7 @@ TEST_P(closed_forms, of_an_even_sky_on_a_convex_body) {
         const vec3 sky(0.7f, 1.3f, 2.9f);
         options.sky = gather::even_sky(sky);
         auto gather = support::make_gather(device, scene, std::span(it.samples), options);
-        for (const std::uint64_t axes : {1, 2, 3, 7, 8, 100}) {
+        for (const std::uint64_t axes : {1u, 2u, 3u, 7u, 8u, 100u}) {
             ASSERT_TRUE(gather.add(axes - gather.axes()));
             for (const vec4& found : support::read(gather)) {
                 for (int c = 0; c < 3; ++c) {

@@ -73,7 +73,7 @@ TEST(convergence, intervals_hold_the_truth_as_often_as_they_say) {
     const lit_box& box = the_box();
     cpu::device device;
     const auto scene = support::make_scene(device, support::describe(box.scene));
-    for (const std::uint64_t axes : {64, 256, 512}) {
+    for (const std::uint64_t axes : {64u, 256u, 512u}) {
         int held = 0;
         int all = 0;
         double squares = 0;

@@ -229,7 +229,7 @@ TEST(directions, of_other_seeds_and_replicates_are_others) {
 /// A replicate's rms error times n^0.75: measured 0.38…0.49 and 0.42…0.55 (see the header). A
 /// sequence without the exponent, by chance, has 1.0 at n = 16 and 2.4 at 512.
 TEST(directions, of_a_replicate_err_by_the_power_of_three_quarters) {
-    for (const std::uint64_t n : {16, 64, 128, 512, 100, 300}) {
+    for (const std::uint64_t n : {16u, 64u, 128u, 512u, 100u, 300u}) {
         double squares = 0;
         for (const form& f : forms()) {
             const double e = rms(f, n > 200 ? 12 : 40, 1, 8, n);
@@ -261,7 +261,7 @@ TEST(directions, of_all_replicates_err_little) {
 /// power of two: 0.92 was measured, 1 would be chance.
 TEST(directions, of_a_pair_fill_each_others_gaps) {
     double ratio = 0;
-    for (const std::uint64_t n : {16, 32, 64, 128}) {
+    for (const std::uint64_t n : {16u, 32u, 64u, 128u}) {
         double alone = 0;
         double paired = 0;
         for (const form& f : forms()) {

@@ -81,7 +81,7 @@ TEST(final_gather, has_the_same_bits_for_any_split) {
     const auto whole = support::gathered(device, scene, box.samples, 90, options);
     options.axes_a_submission = 5;
     auto gather = support::make_gather(device, scene, std::span(box.samples), options);
-    for (const std::uint64_t some : {1, 0, 13, 40, 36}) {
+    for (const std::uint64_t some : {1u, 0u, 13u, 40u, 36u}) {
         ASSERT_TRUE(gather.add(some));
     }
     EXPECT_EQ(gather.axes(), 90u);
