@@ -273,7 +273,7 @@ result<void> draw_park_error(studio& in) {
     if (!fine) {
         return skybark::failure(fine.error());
     }
-    constexpr float most = 0.05f; // of the light
+    constexpr float most = 0.15f; // of the light
     std::vector<float> said(coarse->irradiance.size());
     std::vector<float> is(said.size());
     for (std::size_t i = 0; i < said.size(); ++i) {
