@@ -1,10 +1,11 @@
 // Error of gathered light against directions and against time: our bundles, a ray tracer's
 // hemispheres, and irradiance caching.
 //
-//   skybark_gather_error SCENE [SAMPLES [DIRECTIONS]]      writes CSV
+//   skybark_gather_error SCENE [SAMPLES [DIRECTIONS [SEEDS]]]      writes CSV
 //       SCENE       cornell, park, canopy
 //       SAMPLES     points on its surfaces (65536)
 //       DIRECTIONS  the most directions (1024)
+//       SEEDS       of final_gather: its seconds and errors are means over so many (4)
 //
 //   method              what it is
 //   final_gather        gather::final_gather on the CPU
@@ -260,8 +261,8 @@ void print_exponent(const std::map<std::uint32_t, seed_sums>& sums) {
 }
 
 [[nodiscard]] result<void> measure_final_gather(cpu::device& device, const comparison& c,
-                                                std::uint32_t most, const table& out) {
-    constexpr std::uint64_t seeds = 4;
+                                                std::uint32_t most, std::uint32_t seeds,
+                                                const table& out) {
     const auto scene = lit_scene(device, c);
     if (!scene) {
         return failure(scene.error());
@@ -322,7 +323,8 @@ void measure_caches(cpu::device& device, const comparison& c, const table& out) 
     }
 }
 
-int compare(const std::string& scene, std::uint32_t samples, std::uint32_t most) {
+int compare(const std::string& scene, std::uint32_t samples, std::uint32_t most,
+            std::uint32_t seeds) {
     cpu::device& device = **device_of<cpu::device>::get();
     comparison c;
     c.work = &work_of(scene, samples);
@@ -336,7 +338,7 @@ int compare(const std::string& scene, std::uint32_t samples, std::uint32_t most)
     const double apart = find_truth(device, c, 8192);
     table out(*c.work);
     const double pass_seconds = measure_random(device, c, most, out);
-    if (auto done = measure_final_gather(device, c, most, out); !done) {
+    if (auto done = measure_final_gather(device, c, most, seeds, out); !done) {
         std::fprintf(stderr, "%s\n", done.error().message.c_str());
         return 1;
     }
@@ -356,10 +358,11 @@ int main(int count, char** arguments) {
     };
     const std::string scene = count > 1 ? arguments[1] : "";
     if (scene != "cornell" && scene != "park" && scene != "canopy") {
-        std::fputs("usage: skybark_gather_error cornell|park|canopy [SAMPLES [DIRECTIONS]]\n",
-                   stderr);
+        std::fputs(
+            "usage: skybark_gather_error cornell|park|canopy [SAMPLES [DIRECTIONS [SEEDS]]]\n",
+            stderr);
         return 2;
     }
     return skybark::benchmarks::compare(scene, std::max(number(2, 65536), 1u),
-                                        std::max(number(3, 1024), 1u));
+                                        std::max(number(3, 1024), 1u), std::max(number(4, 4), 1u));
 }
