@@ -327,6 +327,23 @@ TEST(bundle, takes_samples_all_in_one_place) {
     expect_same_bits(s, gather::bounds_of(s.triangles), 19);
 }
 
+/// Rows of a lattice as long as the grid looks samples over: each 512th is in one column.
+TEST(bundle, spreads_its_grid_over_a_lattice) {
+    constexpr int side = 512;
+    std::vector<gather_sample> lattice;
+    gather::bounds box;
+    for (int i = 0; i < side * side; ++i) {
+        lattice.push_back(
+            sample({static_cast<float>(i % side), static_cast<float>(i / side), 0}, {0, 0, 1}));
+        box.add(lattice.back().position);
+    }
+    const ray_bundle bundle = gather::make_bundle(box, {0, 0, 1}, 512, 0.001f);
+    const cpu::bundles::grid grid = cpu::bundles::make_grid(bundle, lattice, 100000);
+    // A square lattice: nearly as many columns as rows, and of the order of one for each sample's.
+    EXPECT_GT(grid.columns, 256u);
+    EXPECT_GT(grid.rows, 256u);
+}
+
 TEST(bundle, recorders_resolve) {
     const scene s = random_scene(20, 1000, 1000, 0.5);
     device d = with_threads(2);

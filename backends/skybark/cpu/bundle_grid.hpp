@@ -92,7 +92,11 @@ inline constexpr std::size_t wanted_bands = 32;
     // What is far from the scene meets nothing.
     const float horizon = 2.0f * bundle.centre.w;
     for (std::size_t i = 0; i < seen; ++i) {
-        const placed_sample at = place(bundle, samples[samples.size() * i / seen], 0);
+        // One of each 512th, by chance: evenly picked ones of a lattice may all be of one column.
+        const std::size_t first = samples.size() * i / seen;
+        const std::size_t some = samples.size() * (i + 1) / seen - first;
+        const std::size_t chance = (i * 0x9e3779b1u & 0xffffffffu) >> 8;
+        const placed_sample at = place(bundle, samples[first + chance % some], 0);
         if (std::abs(at.x) <= horizon && std::abs(at.y) <= horizon) {
             low_x = used == 0 ? at.x : std::min(low_x, at.x);
             high_x = used == 0 ? at.x : std::max(high_x, at.x);
