@@ -199,14 +199,14 @@ shot box_shot(const scenes::gather_scene& box) {
     shot made;
     made.scene.triangles = box.triangles;
     made.scene.materials = box.materials;
-    made.scene.patch_size = 0.08f;
+    made.scene.patch_size = 0.2f;
     made.view.eye = {0, 2.75f, 11.0f};
     made.view.target = {0, 2.75f, 0};
     made.view.field_of_view = 39;
     made.view.nearest = 4;
     made.view.width = made.view.height = 400;
     made.bounces = 4;
-    made.bounce_axes = 512;
+    made.bounce_axes = 1024;
     made.axes = 8192;
     return made;
 }
