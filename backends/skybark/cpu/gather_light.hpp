@@ -5,6 +5,7 @@
 // all over the scene where leaves are small. Kernels wait for each; here they are all asked for
 // first. What the kernels do then is their own, so the bits are the same.
 
+#include <skybark/cpu/memory.hpp>
 #include <skybark/cpu/program.hpp>
 #include <skybark/kernels/directional_light.hpp>
 #include <skybark/kernels/gather_light.hpp>

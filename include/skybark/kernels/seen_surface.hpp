@@ -5,6 +5,7 @@
 #include <skybark/shared/alpha_map.hpp>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 
 namespace skybark::kernels {
 
