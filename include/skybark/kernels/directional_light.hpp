@@ -3,8 +3,7 @@
 // and to the moments of it.
 
 #include <skybark/core/kernel.hpp>
-#include <skybark/shared/bundle.hpp>
-#include <skybark/shared/gathered_light.hpp>
+#include <skybark/kernels/gather_light.hpp>
 
 namespace skybark::kernels {
 
@@ -29,36 +28,17 @@ struct directional_light {
              std::span<const glm::vec4> radiance, std::span<const glm::vec4> before,
              std::span<glm::vec4> sums, std::span<const glm::vec4> moments_before,
              std::span<glm::vec4> moments) const {
+        const gather_light looking{direction, sky_along, sky_against, first};
         const glm::vec3 normal = samples[i].normal;
         const float weight = shared::weight_of_sample(samples[i], direction);
         const glm::vec4 seen =
-            weight > 0.0f ? light_seen(hits[i], normal, tables, radiance) : glm::vec4(0);
+            weight > 0.0f ? looking.light_seen(hits[i], normal, tables, radiance) : glm::vec4(0);
         sums[first + i] = shared::light_sum(before[first + i], seen, weight);
-        const float side = side_of(normal);
+        const float side = looking.side_of(normal);
         const std::size_t at = 3 * std::size_t{i};
         moments[at] = shared::moment_sum(moments_before[at], seen.x, direction, side);
         moments[at + 1] = shared::moment_sum(moments_before[at + 1], seen.y, direction, side);
         moments[at + 2] = shared::moment_sum(moments_before[at + 2], seen.z, direction, side);
-    }
-
-  private:
-    [[nodiscard]] float side_of(glm::vec3 normal) const {
-        const float along =
-            (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
-        return along >= 0.0f ? 1.0f : -1.0f;
-    }
-
-    [[nodiscard]] glm::vec4 light_seen(const gather_hit& hit, glm::vec3 normal,
-                                       std::span<const patch_table> tables,
-                                       std::span<const glm::vec4> radiance) const {
-        if (hit.surface == no_surface) {
-            return side_of(normal) > 0.0f ? sky_along : sky_against;
-        }
-        const patch_table table = tables[hit.surface / 2];
-        const std::uint32_t patches = hit.surface % 2 == 0 ? table.front : table.back;
-        return patches == no_surface
-                   ? glm::vec4(0)
-                   : radiance[patches + shared::patch_at(table.rows, hit.u, hit.v)];
     }
 };
 static_assert(sizeof(directional_light) == 52);

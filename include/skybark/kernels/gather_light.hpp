@@ -30,13 +30,14 @@ struct gather_light {
                                             shared::weight_of_sample(samples[i], direction));
     }
 
-  private:
+    /// 1: such a sample looks along the direction; −1: against it.
     [[nodiscard]] float side_of(glm::vec3 normal) const {
         const float along =
             (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
         return along >= 0.0f ? 1.0f : -1.0f;
     }
 
+    /// What a sample of this normal sees where it meets that.
     [[nodiscard]] glm::vec4 light_seen(const gather_hit& hit, glm::vec3 normal,
                                        std::span<const patch_table> tables,
                                        std::span<const glm::vec4> radiance) const {

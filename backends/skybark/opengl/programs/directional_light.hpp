@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 844c87829a9683c65471bfd46e48340bc4a1304bdc5d7af936245beec0eeb2e4
+// sha256 5d151ace368fef56b036d86ba65afb16068f5fdbe50ce582a843a998684e0062
 #pragma once
 
 #include <skybark/kernels/directional_light.hpp>
@@ -393,8 +393,6 @@ layout(std430, binding = 2) readonly buffer tables_buffer { patch_table tables[]
 layout(std430, binding = 3) readonly buffer radiance_buffer { vec4 radiance[]; };
 layout(std430, binding = 4) readonly buffer before_buffer { vec4 before[]; };
 layout(std430, binding = 5) writeonly buffer sums_buffer { vec4 sums[]; };
-layout(std430, binding = 6) readonly buffer moments_before_buffer { vec4 moments_before[]; };
-layout(std430, binding = 7) writeonly buffer moments_buffer { vec4 moments[]; };
 float side_of(vec3 normal) {
     precise float along =
         (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
@@ -411,6 +409,8 @@ vec4 light_seen(gather_hit hit, vec3 normal) {
     }
     return radiance[patches + patch_at(table.rows, hit.u, hit.v)];
 }
+layout(std430, binding = 6) readonly buffer moments_before_buffer { vec4 moments_before[]; };
+layout(std430, binding = 7) writeonly buffer moments_buffer { vec4 moments[]; };
 void kernel_map(uint i) {
     vec3 normal = samples[i].normal;
     float weight = weight_of_sample(samples[i], direction);
@@ -819,8 +819,6 @@ layout(std430, binding = 2) readonly buffer tables_buffer { patch_table tables[]
 layout(std430, binding = 3) readonly buffer radiance_buffer { vec4 radiance[]; };
 layout(std430, binding = 4) readonly buffer before_buffer { vec4 before[]; };
 layout(std430, binding = 5) writeonly buffer sums_buffer { vec4 sums[]; };
-layout(std430, binding = 6) readonly buffer moments_before_buffer { vec4 moments_before[]; };
-layout(std430, binding = 7) writeonly buffer moments_buffer { vec4 moments[]; };
 float side_of(vec3 normal) {
     precise float along =
         (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
@@ -837,6 +835,8 @@ vec4 light_seen(gather_hit hit, vec3 normal) {
     }
     return radiance[patches + patch_at(table.rows, hit.u, hit.v)];
 }
+layout(std430, binding = 6) readonly buffer moments_before_buffer { vec4 moments_before[]; };
+layout(std430, binding = 7) writeonly buffer moments_buffer { vec4 moments[]; };
 void kernel_map(uint i) {
     vec3 normal = samples[i].normal;
     float weight = weight_of_sample(samples[i], direction);

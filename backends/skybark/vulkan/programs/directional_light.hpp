@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ecbd457306dddd1b5907aef35f8d8763f88af712e37d6609dee70b23cdcbb389
+// sha256 cbfec5563472f609a1887178a4f1031e7da88f54d786f17941aea5285937e57b
 #pragma once
 
 #include <skybark/kernels/directional_light.hpp>
