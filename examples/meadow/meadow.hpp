@@ -68,7 +68,8 @@ class meadow {
     /// Sways until `seconds`, in steps of `longest_step` at most, and makes nothing else of it.
     [[nodiscard]] result<void> settle(double seconds);
     /// The next `record` is of the frame at `seconds`, which lies beyond the last one by no more
-    /// than a few steps: they are all recorded at once. Back in time, or at the same, nothing sways.
+    /// than a few steps: they are all recorded at once. Back in time, or at the same, nothing
+    /// sways.
     void begin_frame(double seconds);
     /// Appends a stage of the frame, or all of them. They are to be appended in their order.
     /// Allocates nothing.
