@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <io/atomic_file.hpp>
 #include <io/read_particles.hpp>
 #include <io/text_input.hpp>
@@ -29,11 +28,6 @@ struct cloud_words {
     bool list = false;
 };
 
-bool same_file(const std::string& a, const std::string& b) {
-    std::error_code error;
-    return !a.empty() && !b.empty() && (a == b || std::filesystem::equivalent(a, b, error));
-}
-
 /// Turns words into a job. Errors are those of the command line.
 result<void> check_words(const cloud_words& words, cloud_job& job) {
     const auto common = check(words.common);
@@ -53,14 +47,10 @@ result<void> check_words(const cloud_words& words, cloud_job& job) {
     if (!options) {
         return failure(options.error());
     }
-    const std::string files[] = {words.input, words.out, words.common.stats, options->probe};
-    for (std::size_t i = 0; i < std::size(files); ++i) {
-        for (std::size_t k = 0; k < i; ++k) {
-            if (same_file(files[i], files[k])) {
-                return fail(error_code::bad_input, "Two of INPUT, -o, --probe and --stats are the "
-                                                   "same file; expected each its own.");
-            }
-        }
+    if (auto good = check_apart({words.input, words.out, words.common.stats, options->probe},
+                                "INPUT, -o, --probe and --stats");
+        !good) {
+        return good;
     }
     job.common = *common;
     job.options = *options;
@@ -77,53 +67,15 @@ int list_clouds() {
     return exit_done;
 }
 
-result<void> make_on_backend(cloud_job& job) {
-    switch (job.common.backend) {
-    case backend_kind::opengl:
-        return make_cloud_on_opengl(job);
-    case backend_kind::vulkan:
-        return make_cloud_on_vulkan(job);
-    default:
-        return make_cloud_on_cpu(job);
-    }
-}
-
-constexpr const char* backend_names[] = {"cpu", "opengl", "vulkan"};
-
-const char* backend_name(const cloud_job& job) {
-    return backend_names[static_cast<std::size_t>(job.common.backend)];
-}
-
 nlohmann::ordered_json stats_of(const cloud_job& job) {
-    nlohmann::ordered_json stats;
-    stats["command"] = "cloud";
-    stats["version"] = SKYBARK_VERSION;
-    stats["input"] = job.input;
-    stats["output"] = job.out;
-    stats["backend"] = backend_name(job);
-    stats["device"] = job.device;
-    stats["driver"] = job.driver;
+    auto stats = begin_report("cloud", job);
     const glm::uvec3 voxels = job.box.voxels;
     stats["counts"] = {{"particles", job.particles.size()},
                        {"densities", job.grid.density.size()},
                        {"voxels", std::uint64_t{voxels.x} * voxels.y * voxels.z},
                        {"points", job.points.size()}};
     stats["voxel"] = {job.box.grid.voxel.x, job.box.grid.voxel.y, job.box.grid.voxel.z};
-    for (const auto& [name, seconds] : job.time.seconds()) {
-        stats["seconds"][name] = seconds;
-    }
-    stats["seconds"]["total"] = job.time.total();
-    stats["bytes"] = {{"up", job.traffic.up}, {"down", job.traffic.down}};
     return stats;
-}
-
-result<void> write_stats(const cloud_job& job) {
-    if (job.common.stats.empty()) {
-        return {};
-    }
-    // What isn't UTF-8 in a file's name is replaced, where the default would throw.
-    const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-    return io::write_file(job.common.stats, stats_of(job).dump(2, ' ', false, replace) + "\n");
 }
 
 void summarise(const cloud_job& job) {
@@ -134,15 +86,8 @@ void summarise(const cloud_job& job) {
     std::printf("%s: %zu %s, %u x %u x %u voxels, %.2f s on %s (%s)\n", job.out.c_str(),
                 is_grid ? job.grid.density.size() : job.particles.size(),
                 is_grid ? "densities" : "particles", job.box.voxels.x, job.box.voxels.y,
-                job.box.voxels.z, job.time.total(), backend_name(job), job.device.c_str());
-}
-
-/// What can be known to fail is told before the work is done.
-result<void> check_files(const cloud_job& job) {
-    if (auto good = io::check_writable(job.out); !good) {
-        return good;
-    }
-    return job.common.stats.empty() ? result<void>() : io::check_writable(job.common.stats);
+                job.box.voxels.z, job.time.total(), name_of(job.common.backend),
+                job.device.c_str());
 }
 
 int run_cloud(const cloud_words& words) {
@@ -153,16 +98,16 @@ int run_cloud(const cloud_words& words) {
     if (auto good = check_words(words, job); !good) {
         return usage_error("cloud", good.error().message);
     }
-    auto done = check_files(job);
+    auto done = check_writable({job.out, job.common.stats});
     if (done) {
         done = read_cloud(job); // before there is a device: a .vdb is read in a child
     }
     if (done) {
-        done = make_on_backend(job);
+        done = on_backend(job, make_cloud_on_cpu, make_cloud_on_opengl, make_cloud_on_vulkan);
     }
     job.time.end(); // takes the bar away before a sentence comes
     if (done) {
-        done = write_stats(job);
+        done = write_report(job, stats_of(job));
     }
     if (!done) {
         return report_failure(done.error());

@@ -2,7 +2,7 @@
 // What the cloud command is asked for, and what it finds on the way.
 
 #include "cloud_options.hpp"
-#include "stages.hpp"
+#include "job.hpp"
 
 #include <io/density_grid.hpp>
 #include <io/probe_points.hpp>
@@ -12,15 +12,11 @@
 
 namespace skybark::tool {
 
-struct cloud_job {
-    explicit cloud_job(bool quiet) : time({"read", "build", "light", "draw", "write"}, quiet) {}
+struct cloud_job : command_job {
+    explicit cloud_job(bool quiet)
+        : command_job({"read", "build", "light", "draw", "write"}, quiet) {}
 
-    common_options common;
     cloud_options options;
-    std::string input;
-    std::string out;
-
-    stages time;
 
     // Filled by `read_cloud`: particles, or a grid.
     std::vector<cloud_particle> particles;
@@ -31,9 +27,6 @@ struct cloud_job {
 
     // Filled by `make_cloud`, for the report.
     clouds::light_box box;
-    std::string device;
-    std::string driver;
-    device_traffic traffic;
 
     [[nodiscard]] bool is_grid() const { return options.source == cloud_source::grid; }
 };

@@ -1,7 +1,6 @@
 #include "cloud_options.hpp"
 
 #include <algorithm>
-#include <array>
 #include <CLI/CLI.hpp>
 #include <io/text_input.hpp>
 
@@ -36,69 +35,6 @@ constexpr named<accumulate_route> routes[] = {{"direct", accumulate_route::direc
 constexpr cloud_entry built_in[] = {
     {"cumulus", "one cloud of fair weather", cloud_source::cumulus},
     {"cumulus_field", "a dozen of them over 8 by 8 km", cloud_source::cumuli}};
-
-failure contradiction(std::string sentence) {
-    return fail(error_code::bad_input, std::move(sentence));
-}
-
-template <class T, std::size_t N>
-[[nodiscard]] result<void> read(std::string_view option, const std::optional<std::string>& text,
-                                const named<T> (&names)[N], T& to) {
-    if (!text) {
-        return {};
-    }
-    const auto value = one_of(option, *text, names);
-    if (!value) {
-        return failure(value.error());
-    }
-    to = *value;
-    return {};
-}
-
-[[nodiscard]] result<void> read(std::string_view option, const std::optional<std::string>& text,
-                                double low, double high, std::string_view unit, float& to) {
-    if (!text) {
-        return {};
-    }
-    const auto value = number(option, *text, low, high, unit);
-    if (!value) {
-        return failure(value.error());
-    }
-    to = static_cast<float>(*value);
-    return {};
-}
-
-[[nodiscard]] result<void> read(std::string_view option, const std::optional<std::string>& text,
-                                std::uint32_t low, std::uint32_t high, std::uint32_t& to) {
-    if (!text) {
-        return {};
-    }
-    const auto value = whole_number(option, *text, low, high);
-    if (!value) {
-        return failure(value.error());
-    }
-    to = *value;
-    return {};
-}
-
-/// The numbers between commas, if there are N and each is one.
-template <std::size_t N>
-std::optional<std::array<double, N>> numbers_in(std::string_view text) {
-    std::array<double, N> numbers{};
-    for (std::size_t i = 0; i < N; ++i) {
-        const std::size_t comma = text.find(',');
-        if ((comma == std::string_view::npos) != (i + 1 == N)) {
-            return {};
-        }
-        const auto value = io::parse_number(text.substr(0, comma));
-        if (!value) {
-            return {};
-        }
-        numbers[i] = *value;
-        text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
-    }
-    return numbers;
-}
 
 result<cloud_source> source_of(const std::string& input) {
     for (const cloud_entry& entry : built_in) {
@@ -148,24 +84,6 @@ result<void> check_probe(const cloud_option_words& words, const cloud_option_con
         return contradiction("-o is " + io::in_quotes(context.out) +
                              "; expected --probe POINTS.csv with it.");
     }
-    return {};
-}
-
-result<void> check_sun(const cloud_option_words& words, cloud_options& options) {
-    if (!words.sun) {
-        return {};
-    }
-    const auto angles = numbers_in<2>(*words.sun);
-    const double lowest = options.output == cloud_output::picture ? 0 : -90;
-    if (!angles || !((*angles)[0] >= -360 && (*angles)[0] <= 360) ||
-        !((*angles)[1] >= lowest && (*angles)[1] <= 90)) {
-        return contradiction("--sun is " + io::in_quotes(*words.sun) +
-                             "; expected AZIMUTH,ELEVATION in degrees, such as 120,50: from -360 "
-                             "to 360 clockwise from north, and from " +
-                             (lowest < 0 ? "-90" : "0, in a picture,") + " to 90.");
-    }
-    options.sun_azimuth = (*angles)[0];
-    options.sun_elevation = (*angles)[1];
     return {};
 }
 
@@ -359,7 +277,8 @@ result<cloud_options> check(const cloud_option_words& words, const cloud_option_
     volume.format = words.half ? volume_format::float16 : volume_format::float32;
     const result<void> all[] = {
         check_probe(words, context, options),
-        check_sun(words, options),
+        read_sun(words.sun, options.output == cloud_output::picture ? 0 : -90, options.sun_azimuth,
+                 options.sun_elevation),
         read("--volume", words.volume, smallest_volume, largest_volume, options.volume),
         read("--method", words.method, methods, options.method),
         read("--padding", words.padding, paddings, volume.policy),

@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <glm/geometric.hpp>
 #include <io/atomic_file.hpp>
 #include <io/exr.hpp>
@@ -35,11 +34,6 @@ struct gather_words {
     gather_option_words more;
 };
 
-bool same_file(const std::string& a, const std::string& b) {
-    std::error_code error;
-    return !a.empty() && !b.empty() && (a == b || std::filesystem::equivalent(a, b, error));
-}
-
 /// Turns words into a job. Errors are those of the command line.
 result<void> check_words(const gather_words& words, gather_job& job) {
     const auto common = check(words.common);
@@ -59,16 +53,11 @@ result<void> check_words(const gather_words& words, gather_job& job) {
         return failure(options.error());
     }
     // A state may be gone on with in place.
-    const std::string files[] = {words.input,     words.out,          words.common.stats,
-                                 options->points, options->unwrapped, options->save};
-    for (std::size_t i = 0; i < std::size(files); ++i) {
-        for (std::size_t k = 0; k < i; ++k) {
-            if (same_file(files[i], files[k])) {
-                return fail(error_code::bad_input,
-                            "Two of SCENE, -o, --points, --unwrapped, --save and --stats are the "
-                            "same file; expected each its own.");
-            }
-        }
+    if (auto good = check_apart({words.input, words.out, words.common.stats, options->points,
+                                 options->unwrapped, options->save},
+                                "SCENE, -o, --points, --unwrapped, --save and --stats");
+        !good) {
+        return good;
     }
     job.common = *common;
     job.options = *options;
@@ -77,32 +66,8 @@ result<void> check_words(const gather_words& words, gather_job& job) {
     return {};
 }
 
-result<void> gather_on_backend(gather_job& job) {
-    switch (job.common.backend) {
-    case backend_kind::opengl:
-        return gather_on_opengl(job);
-    case backend_kind::vulkan:
-        return gather_on_vulkan(job);
-    default:
-        return gather_on_cpu(job);
-    }
-}
-
-constexpr const char* backend_names[] = {"cpu", "opengl", "vulkan"};
-
-const char* backend_name(const gather_job& job) {
-    return backend_names[static_cast<std::size_t>(job.common.backend)];
-}
-
 nlohmann::ordered_json stats_of(const gather_job& job) {
-    nlohmann::ordered_json stats;
-    stats["command"] = "gather";
-    stats["version"] = SKYBARK_VERSION;
-    stats["input"] = job.input;
-    stats["output"] = job.out;
-    stats["backend"] = backend_name(job);
-    stats["device"] = job.device;
-    stats["driver"] = job.driver;
+    auto stats = begin_report("gather", job);
     stats["counts"] = {{"triangles", job.triangles.size()},
                        {"materials", job.materials.size()},
                        {"patches", job.patches},
@@ -113,21 +78,7 @@ nlohmann::ordered_json stats_of(const gather_job& job) {
     if (job.options.places == gather_places::texels) {
         stats["texels_per_metre"] = job.lightmap.texels_per_metre;
     }
-    for (const auto& [name, seconds] : job.time.seconds()) {
-        stats["seconds"][name] = seconds;
-    }
-    stats["seconds"]["total"] = job.time.total();
-    stats["bytes"] = {{"up", job.traffic.up}, {"down", job.traffic.down}};
     return stats;
-}
-
-result<void> write_stats(const gather_job& job) {
-    if (job.common.stats.empty()) {
-        return {};
-    }
-    // What isn't UTF-8 in a file's name is replaced, where the default would throw.
-    const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-    return io::write_file(job.common.stats, stats_of(job).dump(2, ' ', false, replace) + "\n");
 }
 
 void summarise(const gather_job& job) {
@@ -144,21 +95,7 @@ void summarise(const gather_job& job) {
     std::printf("%s: %llu points, %llu directions, %u bounces, error %.3g, %.2f s on %s (%s)\n",
                 job.out.c_str(), static_cast<unsigned long long>(job.points),
                 static_cast<unsigned long long>(job.directions), job.options.bounces, job.error,
-                job.time.total(), backend_name(job), job.device.c_str());
-}
-
-/// What can be known to fail is told before the work is done.
-result<void> check_files(const gather_job& job) {
-    for (const std::string& name :
-         {job.out, job.options.unwrapped, job.options.save, job.common.stats}) {
-        if (name.empty()) {
-            continue;
-        }
-        if (auto good = io::check_writable(name); !good) {
-            return good;
-        }
-    }
-    return {};
+                job.time.total(), name_of(job.common.backend), job.device.c_str());
 }
 
 int run_gather(const gather_words& words) {
@@ -166,16 +103,17 @@ int run_gather(const gather_words& words) {
     if (auto good = check_words(words, job); !good) {
         return usage_error("gather", good.error().message);
     }
-    auto done = check_files(job);
+    auto done =
+        check_writable({job.out, job.options.unwrapped, job.options.save, job.common.stats});
     if (done) {
         done = read_gather(job);
     }
     if (done) {
-        done = gather_on_backend(job);
+        done = on_backend(job, gather_on_cpu, gather_on_opengl, gather_on_vulkan);
     }
     job.time.end(); // takes the bar away before a sentence comes
     if (done) {
-        done = write_stats(job);
+        done = write_report(job, stats_of(job));
     }
     if (!done) {
         return report_failure(done.error());

@@ -2,7 +2,7 @@
 // What the gather command is asked for, and what it finds on the way.
 
 #include "gather_options.hpp"
-#include "stages.hpp"
+#include "job.hpp"
 
 #include <skybark/gather/lightmap.hpp>
 
@@ -10,16 +10,11 @@
 
 namespace skybark::tool {
 
-struct gather_job {
+struct gather_job : command_job {
     explicit gather_job(bool quiet)
-        : time({"read", "build", "bounce", "gather", "draw", "write"}, quiet) {}
+        : command_job({"read", "build", "bounce", "gather", "draw", "write"}, quiet) {}
 
-    common_options common;
     gather_options options;
-    std::string input;
-    std::string out;
-
-    stages time;
 
     // Filled by `read_gather`.
     std::vector<gather_triangle> triangles;
@@ -34,9 +29,6 @@ struct gather_job {
     std::string resumed;  ///< the state to go on from
 
     // Filled by `gather_light`, for the report.
-    std::string device;
-    std::string driver;
-    device_traffic traffic;
     std::uint64_t patches = 0;
     std::uint64_t points = 0;
     std::uint64_t directions = 0;

@@ -1,5 +1,6 @@
 #include "gather_options.hpp"
 
+#include <algorithm>
 #include <CLI/CLI.hpp>
 #include <io/exr.hpp>
 #include <io/text_input.hpp>
@@ -16,56 +17,9 @@ constexpr double brightest = 1e9;
 constexpr named<gather::gather_method> methods[] = {{"resolve", gather::gather_method::resolve},
                                                     {"peel", gather::gather_method::peel}};
 
-failure contradiction(std::string sentence) {
-    return fail(error_code::bad_input, std::move(sentence));
-}
-
-template <class T>
-[[nodiscard]] result<void> read_whole(std::string_view option,
-                                      const std::optional<std::string>& text, std::uint32_t low,
-                                      std::uint32_t high, T& to) {
-    if (!text) {
-        return {};
-    }
-    const auto value = whole_number(option, *text, low, high);
-    if (!value) {
-        return failure(value.error());
-    }
-    to = *value;
-    return {};
-}
-
-template <class T>
-[[nodiscard]] result<void> read_number(std::string_view option,
-                                       const std::optional<std::string>& text, double low,
-                                       double high, std::string_view unit, T& to) {
-    if (!text) {
-        return {};
-    }
-    const auto value = number(option, *text, low, high, unit);
-    if (!value) {
-        return failure(value.error());
-    }
-    to = static_cast<float>(*value);
-    return {};
-}
-
-/// The numbers between commas, if there are `count` and each is from `low` to `high`.
-std::optional<glm::dvec3> numbers_in(std::string_view text, int count, double low, double high) {
-    glm::dvec3 all(0);
-    for (int i = 0; i < count; ++i) {
-        const std::size_t comma = text.find(',');
-        if ((comma == std::string_view::npos) != (i + 1 == count)) {
-            return {};
-        }
-        const auto value = io::parse_number(text.substr(0, comma));
-        if (!value || *value < low || *value > high) {
-            return {};
-        }
-        all[i] = *value;
-        text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
-    }
-    return all;
+[[nodiscard]] bool is_light(std::span<const double> colour) {
+    return std::all_of(colour.begin(), colour.end(),
+                       [](double c) { return c >= 0 && c <= brightest; });
 }
 
 /// R,G,B, or one number for all three.
@@ -75,14 +29,15 @@ std::optional<glm::dvec3> numbers_in(std::string_view text, int count, double lo
     if (!text) {
         return {};
     }
-    const auto colour = numbers_in(*text, 3, 0, brightest);
-    const auto grey = numbers_in(*text, 1, 0, brightest);
-    if (!colour && !grey) {
+    const auto colour = numbers_in<3>(*text);
+    const auto grey = numbers_in<1>(*text);
+    if (!(colour && is_light(*colour)) && !(grey && is_light(*grey))) {
         return contradiction(std::string(option) + " is " + io::in_quotes(*text) +
                              "; expected R,G,B in " + std::string(unit) +
                              ", such as 1,1,1, each from 0 to 1e9.");
     }
-    to = colour ? glm::vec3(*colour) : glm::vec3(static_cast<float>(grey->x));
+    to = colour ? glm::vec3(glm::dvec3((*colour)[0], (*colour)[1], (*colour)[2]))
+                : glm::vec3(static_cast<float>((*grey)[0]));
     return {};
 }
 
@@ -93,15 +48,10 @@ result<void> check_sun(const gather_option_words& words, gather_options& options
     if (!words.sun) {
         return {};
     }
-    const auto angles = numbers_in(*words.sun, 2, -360, 360);
-    if (!angles || !(angles->y >= -90 && angles->y <= 90)) {
-        return contradiction("--sun is " + io::in_quotes(*words.sun) +
-                             "; expected AZIMUTH,ELEVATION in degrees, such as 120,50: from -360 "
-                             "to 360 clockwise from north, and from -90 to 90.");
+    if (auto good = read_sun(words.sun, -90, options.sun_azimuth, options.sun_elevation); !good) {
+        return good;
     }
     options.has_sun = true;
-    options.sun_azimuth = angles->x;
-    options.sun_elevation = angles->y;
     return read_light("--sun-irradiance", words.sun_irradiance, "W/m²", options.sun_irradiance);
 }
 
@@ -195,19 +145,18 @@ result<void> check_directions(const gather_option_words& words, gather_options& 
     }
     if (words.error) {
         float error = 0;
-        if (auto good = read_number("--error", words.error, 1e-9, brightest, "W/m²", error);
-            !good) {
+        if (auto good = read("--error", words.error, 1e-9, brightest, "W/m²", error); !good) {
             return good;
         }
         options.error = static_cast<double>(error);
         options.directions = error_directions;
-        return read_whole("--max-directions", words.most_directions, 1, most_directions,
-                          options.directions);
+        return read("--max-directions", words.most_directions, 1, most_directions,
+                    options.directions);
     }
     if (options.places == gather_places::pixels) {
         options.directions = picture_directions;
     }
-    return read_whole("--directions", words.directions, 1, most_directions, options.directions);
+    return read("--directions", words.directions, 1, most_directions, options.directions);
 }
 
 result<void> check_method(const gather_option_words& words, gather_options& options) {
@@ -229,7 +178,7 @@ result<void> check_method(const gather_option_words& words, gather_options& opti
                                  " is given without --bounces; expected both.");
         }
     }
-    return read_whole("--peel-size", words.peel_size, 16, 16384, options.peel_size);
+    return read("--peel-size", words.peel_size, 16, 16384, options.peel_size);
 }
 
 } // namespace
@@ -312,7 +261,7 @@ result<gather_options> check(const gather_option_words& words,
         done = check_sun(words, options);
     }
     if (done) {
-        done = read_whole("--bounces", words.bounces, 0, 1000, options.bounces);
+        done = read("--bounces", words.bounces, 0, 1000, options.bounces);
     }
     if (done) {
         done = check_method(words, options);
@@ -321,13 +270,13 @@ result<gather_options> check(const gather_option_words& words,
         return failure(done.error());
     }
     const result<void> rest[] = {
-        read_whole("--lightmap", words.lightmap, 1, 32768, options.lightmap),
-        read_whole("--bounce-directions", words.bounce_directions, 1, most_directions,
-                   options.bounce_directions),
-        read_number("--patch-size", words.patch_size, 1e-6, 1e9, "m", options.patch_size),
+        read("--lightmap", words.lightmap, 1, 32768, options.lightmap),
+        read("--bounce-directions", words.bounce_directions, 1, most_directions,
+             options.bounce_directions),
+        read("--patch-size", words.patch_size, 1e-6, 1e9, "m", options.patch_size),
         read_light("--sky", words.sky, "W/(m² sr)", options.sky),
-        read_number("--exposure", words.exposure, 1e-9, 1e9, "", exposure),
-        read_whole("--supersampling", words.supersampling, 1, 8, options.supersampling)};
+        read("--exposure", words.exposure, 1e-9, 1e9, "", exposure),
+        read("--supersampling", words.supersampling, 1, 8, options.supersampling)};
     for (const result<void>& one : rest) {
         if (!one) {
             return failure(one.error());

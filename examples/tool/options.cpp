@@ -11,6 +11,10 @@ namespace skybark::tool {
 
 namespace {
 
+constexpr named<backend_kind> backends[] = {{"cpu", backend_kind::cpu},
+                                            {"opengl", backend_kind::opengl},
+                                            {"vulkan", backend_kind::vulkan}}; // in their order
+
 /// "1280x800". Sides are limited by what a PNG writer and most devices can do.
 result<std::pair<std::uint32_t, std::uint32_t>> parse_size(std::string_view text) {
     constexpr std::uint32_t longest = 16384;
@@ -102,10 +106,11 @@ result<camera_view> check_camera(const std::optional<std::string>& camera,
     return view;
 }
 
+const char* name_of(backend_kind kind) {
+    return backends[static_cast<std::size_t>(kind)].first.data();
+}
+
 result<common_options> check(const common_words& words) {
-    static constexpr named<backend_kind> backends[] = {{"cpu", backend_kind::cpu},
-                                                       {"opengl", backend_kind::opengl},
-                                                       {"vulkan", backend_kind::vulkan}};
     common_options options;
     const auto backend = one_of("--backend", words.backend, backends);
     if (!backend) {
@@ -175,6 +180,44 @@ failure not_among(std::string_view option, std::string_view text,
     }
     return fail(error_code::bad_input,
                 std::string(option) + " is " + io::in_quotes(text) + "; expected " + known + ".");
+}
+
+failure contradiction(std::string sentence) {
+    return fail(error_code::bad_input, std::move(sentence));
+}
+
+bool read_numbers(std::string_view text, std::span<double> to) {
+    for (std::size_t i = 0; i < to.size(); ++i) {
+        const std::size_t comma = text.find(',');
+        if ((comma == std::string_view::npos) != (i + 1 == to.size())) {
+            return false;
+        }
+        const auto value = io::parse_number(text.substr(0, comma));
+        if (!value) {
+            return false;
+        }
+        to[i] = *value;
+        text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
+    }
+    return true;
+}
+
+result<void> read_sun(const std::optional<std::string>& text, double lowest, double& azimuth,
+                      double& elevation) {
+    if (!text) {
+        return {};
+    }
+    const auto angles = numbers_in<2>(*text);
+    if (!angles || !((*angles)[0] >= -360 && (*angles)[0] <= 360) ||
+        !((*angles)[1] >= lowest && (*angles)[1] <= 90)) {
+        return contradiction("--sun is " + io::in_quotes(*text) +
+                             "; expected AZIMUTH,ELEVATION in degrees, such as 120,50: from -360 "
+                             "to 360 clockwise from north, and from " +
+                             std::to_string(static_cast<int>(lowest)) + " to 90.");
+    }
+    azimuth = (*angles)[0];
+    elevation = (*angles)[1];
+    return {};
 }
 
 std::string extension_of(const std::string& path) {

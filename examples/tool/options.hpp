@@ -3,6 +3,8 @@
 
 #include <skybark/core/result.hpp>
 
+#include <array>
+#include <concepts>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
@@ -38,6 +40,7 @@ struct common_words {
 };
 
 enum class backend_kind { cpu, opengl, vulkan };
+[[nodiscard]] const char* name_of(backend_kind kind);
 
 struct common_options {
     backend_kind backend = backend_kind::cpu;
@@ -94,6 +97,64 @@ template <class T, std::size_t N>
     }
     return not_among(option, text, known);
 }
+
+/// An error of the command line.
+[[nodiscard]] failure contradiction(std::string sentence);
+
+/// `read` takes what was typed behind an option, if it was: else `to` stays as it is. Errors are
+/// those of whole_number, number and one_of.
+template <std::unsigned_integral T>
+[[nodiscard]] result<void> read(std::string_view option, const std::optional<std::string>& text,
+                                std::uint32_t low, std::uint32_t high, T& to) {
+    if (!text) {
+        return {};
+    }
+    const auto value = whole_number(option, *text, low, high);
+    if (!value) {
+        return failure(value.error());
+    }
+    to = *value;
+    return {};
+}
+template <std::floating_point T>
+[[nodiscard]] result<void> read(std::string_view option, const std::optional<std::string>& text,
+                                double low, double high, std::string_view unit, T& to) {
+    if (!text) {
+        return {};
+    }
+    const auto value = number(option, *text, low, high, unit);
+    if (!value) {
+        return failure(value.error());
+    }
+    to = static_cast<T>(*value);
+    return {};
+}
+template <class T, std::size_t N>
+[[nodiscard]] result<void> read(std::string_view option, const std::optional<std::string>& text,
+                                const named<T> (&names)[N], T& to) {
+    if (!text) {
+        return {};
+    }
+    const auto value = one_of(option, *text, names);
+    if (!value) {
+        return failure(value.error());
+    }
+    to = *value;
+    return {};
+}
+
+/// Numbers with commas between: whether there are as many as `to` takes, and each is one.
+[[nodiscard]] bool read_numbers(std::string_view text, std::span<double> to);
+template <std::size_t N>
+[[nodiscard]] std::optional<std::array<double, N>> numbers_in(std::string_view text) {
+    std::array<double, N> numbers{};
+    return read_numbers(text, numbers) ? std::optional(numbers) : std::nullopt;
+}
+
+/// --sun AZIMUTH,ELEVATION, in degrees: the azimuth from -360 to 360, the elevation from `lowest`
+/// to 90.
+[[nodiscard]] result<void> read_sun(const std::optional<std::string>& text, double lowest,
+                                    double& azimuth, double& elevation);
 
 /// The extension in lower case, with its dot.
 [[nodiscard]] std::string extension_of(const std::string& path);

@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <io/atomic_file.hpp>
 #include <io/joint_motion.hpp>
 #include <io/read_image.hpp>
@@ -101,11 +100,6 @@ result<trees::branch_mesh_options> check_mesh(const tree_words& words) {
     return trees::branch_mesh_options{*sides_number, *rings_number, *frame, *form, *policy};
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-    std::error_code error;
-    return !a.empty() && !b.empty() && (a == b || std::filesystem::equivalent(a, b, error));
-}
-
 /// One closed surface a tree, but where something is asked for that others have: lists.
 tree_surface surface_of(const tree_words& words, const tree_options& more) {
     if (words.skeleton) {
@@ -147,10 +141,10 @@ result<void> check_words(const tree_words& words, tree_job& job) {
     if (!more) {
         return failure(more.error());
     }
-    if (same_file(words.out, words.common.stats) || same_file(words.input, words.common.stats) ||
-        same_file(words.input, words.out)) {
-        return fail(error_code::bad_input, "Two of INPUT, -o and --stats are the same file; "
-                                           "expected each its own.");
+    if (auto good =
+            check_apart({words.input, words.out, words.common.stats}, "INPUT, -o and --stats");
+        !good) {
+        return good;
     }
     job.common = *common;
     job.mesh = *mesh;
@@ -174,23 +168,6 @@ int list_species() {
     return exit_done;
 }
 
-result<void> make_on_backend(tree_job& job) {
-    switch (job.common.backend) {
-    case backend_kind::opengl:
-        return make_tree_on_opengl(job);
-    case backend_kind::vulkan:
-        return make_tree_on_vulkan(job);
-    default:
-        return make_tree_on_cpu(job);
-    }
-}
-
-constexpr const char* backend_names[] = {"cpu", "opengl", "vulkan"};
-
-const char* backend_name(const tree_job& job) {
-    return backend_names[static_cast<std::size_t>(job.common.backend)];
-}
-
 /// Branches: segments that don't continue their parents.
 std::size_t chains_of(const trees::skeleton& tree) {
     std::size_t chains = 0;
@@ -202,33 +179,12 @@ std::size_t chains_of(const trees::skeleton& tree) {
 }
 
 nlohmann::ordered_json stats_of(const tree_job& job) {
-    nlohmann::ordered_json stats;
-    stats["command"] = "tree";
-    stats["version"] = SKYBARK_VERSION;
-    stats["input"] = job.input;
-    stats["output"] = job.out;
-    stats["backend"] = backend_name(job);
-    stats["device"] = job.device;
-    stats["driver"] = job.driver;
+    auto stats = begin_report("tree", job);
     stats["counts"] = {{"segments", job.tree.size()}, {"chains", chains_of(job.tree)},
                        {"leaves", job.leaves.size()}, {"frames", job.more.frames},
                        {"vertices", job.vertices},    {"indices", job.indices},
                        {"triangles", job.triangles},  {"parts", job.parts}};
-    for (const auto& [name, seconds] : job.time.seconds()) {
-        stats["seconds"][name] = seconds;
-    }
-    stats["seconds"]["total"] = job.time.total();
-    stats["bytes"] = {{"up", job.traffic.up}, {"down", job.traffic.down}};
     return stats;
-}
-
-result<void> write_stats(const tree_job& job) {
-    if (job.common.stats.empty()) {
-        return {};
-    }
-    // What isn't UTF-8 in a file's name is replaced, where the default would throw.
-    const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-    return io::write_file(job.common.stats, stats_of(job).dump(2, ' ', false, replace) + "\n");
 }
 
 void summarise(const tree_job& job) {
@@ -237,15 +193,7 @@ void summarise(const tree_job& job) {
     }
     std::printf("%s: %zu segments, %llu triangles, %.2f s on %s (%s)\n", job.out.c_str(),
                 job.tree.size(), static_cast<unsigned long long>(job.triangles), job.time.total(),
-                backend_name(job), job.device.c_str());
-}
-
-/// What can be known to fail is told before the work is done.
-result<void> check_files(const tree_job& job) {
-    if (auto good = io::check_writable(name_of(job, 0)); !good) {
-        return good;
-    }
-    return job.common.stats.empty() ? result<void>() : io::check_writable(job.common.stats);
+                name_of(job.common.backend), job.device.c_str());
 }
 
 int run_tree(const tree_words& words) {
@@ -256,13 +204,13 @@ int run_tree(const tree_words& words) {
     if (auto good = check_words(words, job); !good) {
         return usage_error("tree", good.error().message);
     }
-    auto done = check_files(job);
+    auto done = check_writable({name_of(job, 0), job.common.stats});
     if (done) {
-        done = make_on_backend(job);
+        done = on_backend(job, make_tree_on_cpu, make_tree_on_opengl, make_tree_on_vulkan);
     }
     job.time.end(); // takes the bar away before a sentence comes
     if (done) {
-        done = write_stats(job);
+        done = write_report(job, stats_of(job));
     }
     if (!done) {
         return report_failure(done.error());

@@ -5,8 +5,6 @@
 #include "tree_job.hpp"
 
 #include <io/branch_carriers.hpp>
-#include <io/write_apng.hpp>
-#include <io/write_png.hpp>
 #include <picture/tree_picture.hpp>
 #include <skybark/trees/swaying_tree.hpp>
 
@@ -30,7 +28,8 @@ class tree_frames {
   public:
     tree_frames(B& device, tree_job& job, trees::swaying_tree<B, Mesh> tree,
                 std::optional<trees::wind_field<B>> air)
-        : device_(device), job_(job), tree_(std::move(tree)), air_(std::move(air)) {}
+        : device_(device), job_(job), tree_(std::move(tree)), air_(std::move(air)),
+          files_(job.out, job.common.width, job.common.height, job.more.frames, job.more.fps) {}
 
     /// Everything that the job asks for.
     [[nodiscard]] result<void> make() {
@@ -46,8 +45,8 @@ class tree_frames {
         result<void> done;
         if (is_animated_mesh()) {
             done = save_animation();
-        } else if (animation_) {
-            done = animation_->commit();
+        } else {
+            done = files_.commit();
         }
         return done;
     }
@@ -167,20 +166,8 @@ class tree_frames {
     [[nodiscard]] result<void> write_picture(std::uint32_t frame,
                                              std::span<const std::uint8_t> rgba) {
         job_.time.begin("write");
-        const std::uint32_t width = job_.common.width;
-        const std::uint32_t height = job_.common.height;
-        if (job_.kind == tree_output::picture) {
-            return io::write_png(name_of(job_, frame), rgba, width, height);
-        }
-        if (!animation_) {
-            auto file = io::apng_writer::create(job_.out, width, height, job_.more.frames,
-                                                io::delay_of(job_.more.fps));
-            if (!file) {
-                return failure(file.error());
-            }
-            animation_ = std::move(*file);
-        }
-        return animation_->add(rgba);
+        return job_.kind == tree_output::picture ? files_.write(name_of(job_, frame), rgba)
+                                                 : files_.add(rgba);
     }
 
     [[nodiscard]] result<void> save(std::uint32_t frame) {
@@ -267,7 +254,7 @@ class tree_frames {
     trees::swaying_tree<B, Mesh> tree_;
     std::optional<trees::wind_field<B>> air_;
     std::optional<picture::tree_painter<B>> painter_;
-    std::optional<io::apng_writer> animation_;
+    frame_files files_;
     std::vector<segment_pose> animation_poses_;
     double now_ = 0;
 };

@@ -1,8 +1,7 @@
 #pragma once
 // What the tree command is asked for, and what it finds on the way.
 
-#include "options.hpp"
-#include "stages.hpp"
+#include "job.hpp"
 #include "tree_options.hpp"
 
 #include <io/surface_scene.hpp>
@@ -21,19 +20,14 @@ enum class tree_output { picture, animation, obj, glb, ply };
 /// How the branches are meshed.
 enum class tree_surface { closed, tubes, detailed, sticks };
 
-struct tree_job {
+struct tree_job : command_job {
     explicit tree_job(bool quiet)
-        : time({"read", "build", "sway", "mesh", "draw", "write"}, quiet) {}
+        : command_job({"read", "build", "sway", "mesh", "draw", "write"}, quiet) {}
 
-    common_options common;
     tree_options more;
-    std::string input;
-    std::string out;
     tree_output kind = tree_output::picture;
     tree_surface surface = tree_surface::closed;
     trees::branch_mesh_options mesh;
-
-    stages time;
 
     // Filled by `read_skeleton`.
     trees::skeleton tree;
@@ -51,9 +45,6 @@ struct tree_job {
     std::uint64_t indices = 0;
     std::uint64_t triangles = 0;
     std::uint64_t parts = 0;
-    std::string device;
-    std::string driver;
-    device_traffic traffic;
 
     /// How deep the bark's relief is where it is drawn from its map alone, m.
     [[nodiscard]] float relief() const { return more.bark_depth > 0 ? more.bark_depth : 0.025f; }

@@ -20,39 +20,6 @@ constexpr double most_frames_a_second = 1000;
 constexpr std::uint32_t most_frames = 1000000;
 constexpr double coarsest = 16;
 
-failure contradiction(std::string sentence) {
-    return fail(error_code::bad_input, std::move(sentence));
-}
-
-/// Reads `text` into `to` if it was typed.
-template <class T>
-[[nodiscard]] result<void> read(std::string_view option, const std::optional<std::string>& text,
-                                double low, double high, std::string_view unit, T& to) {
-    if (!text) {
-        return {};
-    }
-    const auto value = number(option, *text, low, high, unit);
-    if (!value) {
-        return failure(value.error());
-    }
-    to = static_cast<T>(*value);
-    return {};
-}
-
-template <class T, std::size_t N>
-[[nodiscard]] result<void> read(std::string_view option, const std::optional<std::string>& text,
-                                const named<T> (&names)[N], T& to) {
-    if (!text) {
-        return {};
-    }
-    const auto value = one_of(option, *text, names);
-    if (!value) {
-        return failure(value.error());
-    }
-    to = *value;
-    return {};
-}
-
 [[nodiscard]] result<void> read_file_name(std::string_view option,
                                           const std::optional<std::string>& text, std::string& to) {
     if (text && text->empty()) {
@@ -121,43 +88,15 @@ result<void> check_wind(const tree_option_words& words, tree_options& options) {
                 options.wind_from);
 }
 
-/// Whether a file of that kind has all frames inside.
-bool holds_frames(const std::string& out) {
-    const std::string extension = extension_of(out);
-    return extension == ".glb" || extension == ".apng";
-}
-
-/// The name of a single file: a place for a number in it is a slip.
-result<void> check_single_name(const std::string& out, const char* expected) {
-    const auto name = frame_name::parse(out);
-    if (name && name->is_numbered()) {
-        return contradiction("-o is " + io::in_quotes(out) + ", with a place for a number; " +
-                             expected);
-    }
-    return {};
-}
-
 result<void> check_output(const tree_option_context& context, tree_options& options) {
-    if (holds_frames(context.out)) {
-        options.output = frame_output::together;
-        if (extension_of(context.out) == ".glb" && context.list_form) {
-            return contradiction("--form list has no frames in a .glb; expected --form rings.");
-        }
-        return check_single_name(context.out, "expected a name without, since this kind of file "
-                                              "holds all frames.");
+    if (extension_of(context.out) == ".glb" && context.list_form) {
+        return contradiction("--form list has no frames in a .glb; expected --form rings.");
     }
-    const auto name = frame_name::parse(context.out);
-    if (!name) {
-        return failure(name.error());
+    const auto output = find_frame_output(context.out, options.frames, options.name);
+    if (!output) {
+        return failure(output.error());
     }
-    if (options.frames > 1 && !name->is_numbered()) {
-        return contradiction("--frames is " + std::to_string(options.frames) + ", but -o is " +
-                             io::in_quotes(context.out) +
-                             "; expected a place for the frame's number in it, such as %04d, or a "
-                             "name that ends in .glb or .apng.");
-    }
-    options.output = frame_output::numbered;
-    options.name = *name;
+    options.output = *output;
     return {};
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // What `skybark tree` is asked for beyond a mesh: bark, leaves, wind and sway, frames, detail.
 
-#include "frame_name.hpp"
+#include "frame_files.hpp"
 
 #include <skybark/core/result.hpp>
 
@@ -39,13 +39,6 @@ struct tree_option_words {
 /// How a tree answers to the wind: as the paper has it, at rest in every wind, or with inertia.
 enum class sway_kind { paper, quasi_static, dynamic };
 enum class gust_kind { kaimal, power_law, none };
-
-/// What becomes of the frames.
-enum class frame_output {
-    single,   ///< there is one, and the name is as it is
-    numbered, ///< each has a file of its own, `name.of(frame)`
-    together, ///< all are in the one file: .glb, .apng
-};
 
 struct tree_options {
     float bark_depth = 0;       ///< m, of the relief; 0: none

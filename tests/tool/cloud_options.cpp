@@ -130,7 +130,7 @@ TEST(cloud_options, know_the_sun) {
                             "0,91", "0,-91", "east,50", "120,", ",50", " 120,50"}) {
         expect_refused(typed("--sun", bad), {"--sun", bad, "AZIMUTH,ELEVATION"}, to_volume);
     }
-    expect_refused({"--sun=0,-1"}, {"--sun", "in a picture"});
+    expect_refused({"--sun=0,-1"}, {"--sun", "from 0 to 90"});
 }
 
 TEST(cloud_options, refuse_numbers_that_are_none) {
