@@ -19,6 +19,7 @@ struct command {
 [[nodiscard]] command add_tree_command(CLI::App& to);
 [[nodiscard]] command add_cloud_command(CLI::App& to);
 [[nodiscard]] command add_gather_command(CLI::App& to);
+[[nodiscard]] command add_meadow_command(CLI::App& to);
 [[nodiscard]] command add_devices_command(CLI::App& to);
 [[nodiscard]] command add_conformance_command(CLI::App& to);
 

@@ -17,7 +17,7 @@ result<void> check_single_name(const std::string& out, std::string_view expected
 }
 
 result<frame_output> find_frame_output(const std::string& out, std::uint32_t frames,
-                                       frame_name& name) {
+                                       const std::string& asked, frame_name& name) {
     const std::string extension = extension_of(out);
     if (extension == ".glb" || extension == ".apng") {
         auto good = check_single_name(out, "expected a name without, since this kind of file "
@@ -29,8 +29,7 @@ result<frame_output> find_frame_output(const std::string& out, std::uint32_t fra
         return failure(parsed.error());
     }
     if (frames > 1 && !parsed->is_numbered()) {
-        return contradiction(std::to_string(frames) + " frames are asked for, but -o is " +
-                             io::in_quotes(out) +
+        return contradiction(asked + ", but -o is " + io::in_quotes(out) +
                              "; expected a place for the frame's number in it, such as %04d, or a "
                              "name that ends in .glb or .apng.");
     }

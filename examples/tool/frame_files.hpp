@@ -20,9 +20,10 @@ enum class frame_output {
 /// the sentence.
 [[nodiscard]] result<void> check_single_name(const std::string& out, std::string_view expected);
 
-/// How so many frames go to `out`; a name of numbered ones is read into `name`.
+/// How so many frames go to `out`; a name of numbered ones is read into `name`. `asked` begins the
+/// sentence that says there are too many, such as "--frames is 2".
 [[nodiscard]] result<frame_output> find_frame_output(const std::string& out, std::uint32_t frames,
-                                                     frame_name& name);
+                                                     const std::string& asked, frame_name& name);
 
 /// Pictures of one size.
 class frame_files {

@@ -49,9 +49,9 @@ int run(int count, char** words) {
     CLI::App app{"GPU algorithms for natural scenes: tries them out, and writes what they make.",
                  "skybark"};
     app.set_version_flag("--version", std::string("skybark ") + SKYBARK_VERSION);
-    std::vector<command> commands{add_tree_command(app), add_cloud_command(app),
-                                  add_gather_command(app), add_devices_command(app),
-                                  add_conformance_command(app)};
+    std::vector<command> commands{add_tree_command(app),    add_cloud_command(app),
+                                  add_gather_command(app),  add_meadow_command(app),
+                                  add_devices_command(app), add_conformance_command(app)};
     app.require_subcommand(0, 1);
     for (CLI::App* sub : app.get_subcommands({})) {
         sub->set_version_flag("--version", std::string("skybark ") + SKYBARK_VERSION);
@@ -62,8 +62,9 @@ int run(int count, char** words) {
     }
     const std::string first = words[1];
     if (first.substr(0, 1) != "-" && !is_known(commands, first)) {
-        return usage_error("", "There is no command " + io::in_quotes(first) +
-                                   "; expected tree, cloud, gather, devices or conformance.");
+        return usage_error("",
+                           "There is no command " + io::in_quotes(first) +
+                               "; expected tree, cloud, gather, meadow, devices or conformance.");
     }
     try {
         app.parse(count, words);
@@ -79,7 +80,7 @@ int run(int count, char** words) {
         }
     }
     return usage_error(
-        "", "There is no command; expected tree, cloud, gather, devices or conformance.");
+        "", "There is no command; expected tree, cloud, gather, meadow, devices or conformance.");
 }
 
 } // namespace

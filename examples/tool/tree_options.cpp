@@ -92,7 +92,8 @@ result<void> check_output(const tree_option_context& context, tree_options& opti
     if (extension_of(context.out) == ".glb" && context.list_form) {
         return contradiction("--form list has no frames in a .glb; expected --form rings.");
     }
-    const auto output = find_frame_output(context.out, options.frames, options.name);
+    const auto output = find_frame_output(
+        context.out, options.frames, "--frames is " + std::to_string(options.frames), options.name);
     if (!output) {
         return failure(output.error());
     }

@@ -82,7 +82,7 @@ TEST_F(tool_usage, wants_a_command) {
     const outcome o = skybark({});
     EXPECT_EQ(o.code, 2);
     EXPECT_TRUE(has(o.err, {"Usage: skybark"}));
-    expect_refused({"grow"}, {"\"grow\"", "tree, cloud, gather, devices or conformance"});
+    expect_refused({"grow"}, {"\"grow\"", "tree, cloud, gather, meadow, devices or conformance"});
     expect_refused({"--grow"}, {"--grow"});
 }
 
