@@ -464,10 +464,10 @@ class recorder {
         with_spans<typename K::buffers::spans>(buffers, work,
                                                std::make_index_sequence<K::buffers::size>{});
     }
-    template <class Spans, class Bindings, class Work, std::size_t... I>
-    static void with_spans(const Bindings& buffers, Work&& work, std::index_sequence<I...>) {
+    template <class Spans, class Bindings, class Work, std::size_t... Index>
+    static void with_spans(const Bindings& buffers, Work&& work, std::index_sequence<Index...>) {
         (void)buffers;
-        work(records_of<device, std::tuple_element_t<I, Spans>>(buffers[I])...);
+        work(records_of<device, std::tuple_element_t<Index, Spans>>(buffers[Index])...);
     }
 
     [[nodiscard]] static std::uint32_t length_of(const counted<device>& elements) {

@@ -28,10 +28,10 @@ struct number {
         // From 2^23 on every float is whole.
         const lanes::i4 broken =
             (a.v < lanes::splat(8388608.0f)) & (a.v > lanes::splat(-8388608.0f));
-        const lanes::f4 near = lanes::choose(broken, a.v, lanes::splat(0));
+        const lanes::f4 whole = lanes::choose(broken, a.v, lanes::splat(0));
         const lanes::f4 cut =
-            __builtin_convertvector(__builtin_convertvector(near, lanes::i4), lanes::f4);
-        const lanes::f4 down = cut - lanes::choose(near < cut, lanes::splat(1), lanes::splat(0));
+            __builtin_convertvector(__builtin_convertvector(whole, lanes::i4), lanes::f4);
+        const lanes::f4 down = cut - lanes::choose(whole < cut, lanes::splat(1), lanes::splat(0));
         return lanes::choose(broken, down, a.v);
     }
 };

@@ -50,8 +50,8 @@ struct half {
         return float_of(sign | 0x7f800000u | (magnitude & 0x3ffu) << 13);
     }
     if (magnitude < 0x400u) {
-        const float small = static_cast<float>(magnitude) * 0x1p-24f;
-        return sign != 0 ? -small : small;
+        const float subnormal = static_cast<float>(magnitude) * 0x1p-24f;
+        return sign != 0 ? -subnormal : subnormal;
     }
     return float_of(sign | ((magnitude << 13) + (112u << 23)));
 }

@@ -201,12 +201,12 @@ struct program<kernels::scatter_prolong> : plain_program<kernels::scatter_prolon
                        std::uint32_t count, const grids& grids) {
         using namespace lanes;
         const glm::ivec3 last = grids.size(1) - 1;
-        const glm::ivec3 near = glm::min(first / 2, last);
-        const glm::ivec3 far =
-            glm::clamp(near + 2 * (first - 2 * (first / 2)) - 1, glm::ivec3(0), last);
+        const glm::ivec3 nearer = glm::min(first / 2, last);
+        const glm::ivec3 farther =
+            glm::clamp(nearer + 2 * (first - 2 * (first / 2)) - 1, glm::ivec3(0), last);
         const std::byte* const rows[] = {
-            grids.read_row(1, near.y, near.z), grids.read_row(1, far.y, near.z),
-            grids.read_row(1, near.y, far.z), grids.read_row(1, far.y, far.z)};
+            grids.read_row(1, nearer.y, nearer.z), grids.read_row(1, farther.y, nearer.z),
+            grids.read_row(1, nearer.y, farther.z), grids.read_row(1, farther.y, farther.z)};
         const std::byte* const from = grids.read_row(0, first.y, first.z);
         std::byte* const to = grids.write_row(0, first.y, first.z);
         const int end = first.x + static_cast<int>(count);

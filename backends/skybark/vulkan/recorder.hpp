@@ -61,7 +61,7 @@ namespace detail {
 /// An expansion into a list, its types forgotten.
 struct list_call {
     spirv_words count;
-    spirv_words emit;
+    spirv_words write;
     push_block push;
     compute_slices buffers{};
     range elements;
@@ -603,7 +603,7 @@ class recorder : private detail::stream {
                                               const triangle_list<device>& out) {
         detail::list_call call;
         call.count = program<K>::strip_counts_comp;
-        call.emit = program<K>::strips_comp;
+        call.write = program<K>::strips_comp;
         call.push = detail::push_of(kernel);
         call.buffers = bound_all(buffers);
         call.vertices = bound(out.vertices);
@@ -658,7 +658,7 @@ class recorder : private detail::stream {
         } else if (what.policy == padding::degenerate) {
             const auto count = static_cast<std::uint32_t>(
                 std::min<std::uint64_t>(what.elements.count, (fit + each - 1) / each));
-            emit(what, count, each, {});
+            write_strips(what, count, each, {});
             write_record(what, fit, {});
         } else {
             const std::uint32_t count = what.elements.count;
@@ -667,7 +667,7 @@ class recorder : private detail::stream {
             count_triangles(what, offsets);
             scan_words(offsets, count, total);
             if (fit != 0) {
-                emit(what, count, each, offsets);
+                write_strips(what, count, each, offsets);
             }
             write_record(what, fit, total);
         }
@@ -687,11 +687,11 @@ class recorder : private detail::stream {
     }
 
     /// The triangles of the first `count` elements: at `offsets`, or `each` an element.
-    void emit(const detail::list_call& what, std::uint32_t count, std::uint64_t each,
-              const slice& offsets) {
+    void write_strips(const detail::list_call& what, std::uint32_t count, std::uint64_t each,
+                      const slice& offsets) {
         const bool degenerate = what.policy == padding::degenerate;
         const detail::work_plan p = plan(what.strips, what.strip_triangles, 512, 2);
-        detail::compute_call pass{what.emit, "skybark: strips", what.push, what.buffers, {}};
+        detail::compute_call pass{what.write, "skybark: strips", what.push, what.buffers, {}};
         pass.buffers[length_binding] = what.length;
         const std::uint32_t flags =
             p.flags | counted_flag(what) | (degenerate ? detail::flag_degenerate : 0);

@@ -57,8 +57,8 @@ class bundle_peeler {
                             std::to_string(limits.max_image_size) + " pixels and up to " +
                             std::to_string(limits.max_buffer_bytes) + " bytes.");
         }
-        const std::vector<float> far(std::size_t{options.size} * options.size, 1.0f);
-        auto clear = make_buffer<B, float>(device, far);
+        const std::vector<float> farthest(std::size_t{options.size} * options.size, 1.0f);
+        auto clear = make_buffer<B, float>(device, farthest);
         auto depth = device.create_buffer(bytes);
         auto triangle = device.create_buffer(bytes);
         auto count = device.create_buffer(sizeof(count_record));

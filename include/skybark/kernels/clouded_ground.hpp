@@ -44,11 +44,12 @@ struct clouded_ground {
         }
         const glm::vec3 up(0, 1, 0);
         const glm::vec3 away = p - glm::vec3(scene[0].camera);
-        const float far = glm::length(away);
-        const glm::vec3 light = shared::lit(shared::country_albedo(p.x, p.z, far), up, scene[0].sky,
-                                            sun, ambient_of(scene[0], up));
-        const glm::vec3 before = shared::sky_radiance(scene[0].sky, away * (1.0f / far));
-        return {glm::vec4(glm::mix(light, before, shared::one_minus_exp(air * far)), 1.0f), true};
+        const float distance = glm::length(away);
+        const glm::vec3 light = shared::lit(shared::country_albedo(p.x, p.z, distance), up,
+                                            scene[0].sky, sun, ambient_of(scene[0], up));
+        const glm::vec3 before = shared::sky_radiance(scene[0].sky, away * (1.0f / distance));
+        return {glm::vec4(glm::mix(light, before, shared::one_minus_exp(air * distance)), 1.0f),
+                true};
     }
 };
 

@@ -32,9 +32,9 @@ struct meadow_ground {
         const glm::vec3 light = shared::lit(shared::grass_albedo(p.x, p.z), up, scene[0].sky, sun,
                                             ambient_of(scene[0], up));
         const glm::vec3 away = p - glm::vec3(scene[0].camera);
-        const float far = glm::length(away);
-        const glm::vec3 air = shared::sky_radiance(scene[0].sky, away * (1.0f / far));
-        return {glm::vec4(glm::mix(light, air, shared::haze(far)), 1.0f), true};
+        const float distance = glm::length(away);
+        const glm::vec3 air = shared::sky_radiance(scene[0].sky, away * (1.0f / distance));
+        return {glm::vec4(glm::mix(light, air, shared::haze(distance)), 1.0f), true};
     }
 };
 

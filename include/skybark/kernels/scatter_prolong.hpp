@@ -17,13 +17,16 @@ struct scatter_prolong {
     template <class Grids>
     void voxel(glm::ivec3 at, const Grids& grids) const {
         const glm::ivec3 last = grids.size(1) - 1;
-        const glm::ivec3 near = glm::min(at / 2, last);
-        const glm::ivec3 far = glm::clamp(near + 2 * (at - 2 * (at / 2)) - 1, glm::ivec3(0), last);
+        const glm::ivec3 nearer = glm::min(at / 2, last);
+        const glm::ivec3 farther =
+            glm::clamp(nearer + 2 * (at - 2 * (at / 2)) - 1, glm::ivec3(0), last);
         const auto row = [&](int y, int z) {
-            return 0.75f * grids.load(1, {near.x, y, z}) + 0.25f * grids.load(1, {far.x, y, z});
+            return 0.75f * grids.load(1, {nearer.x, y, z}) +
+                   0.25f * grids.load(1, {farther.x, y, z});
         };
-        const float sum = 0.75f * (0.75f * row(near.y, near.z) + 0.25f * row(far.y, near.z)) +
-                          0.25f * (0.75f * row(near.y, far.z) + 0.25f * row(far.y, far.z));
+        const float sum =
+            0.75f * (0.75f * row(nearer.y, nearer.z) + 0.25f * row(farther.y, nearer.z)) +
+            0.25f * (0.75f * row(nearer.y, farther.z) + 0.25f * row(farther.y, farther.z));
         grids.store(0, at, from_zero != 0 ? sum : grids.load(0, at) + sum);
     }
 };

@@ -510,22 +510,22 @@ class bark_mesh {
         const std::vector<std::uint8_t> refine =
             detail::triangles_to_refine(rest.vertices, *indices, options_);
         std::array<std::vector<std::uint32_t>, 8> large; // by halvings
-        std::vector<std::uint32_t> small;
+        std::vector<std::uint32_t> whole;
         for (std::size_t k = 0; k < 3 * refine.size(); ++k) {
             const std::uint8_t halvings = refine[k / 3];
-            (halvings == detail::not_refined ? small : large[halvings])
+            (halvings == detail::not_refined ? whole : large[halvings])
                 .push_back((*indices)[k] - g.base_vertex);
         }
-        if (small.size() == indices->size()) {
+        if (whole.size() == indices->size()) {
             plain_.push_back({of, {}, g.count / 3});
             return {};
         }
-        if (!small.empty()) {
-            auto made = make_buffer<B, std::uint32_t>(device, small);
+        if (!whole.empty()) {
+            auto made = make_buffer<B, std::uint32_t>(device, whole);
             if (!made) {
                 return failure(made.error());
             }
-            plain_.push_back({of, std::move(*made), static_cast<std::uint32_t>(small.size() / 3)});
+            plain_.push_back({of, std::move(*made), static_cast<std::uint32_t>(whole.size() / 3)});
         }
         float relief = options_.relief;
         for (const std::vector<std::uint32_t>& some : large) {
@@ -707,10 +707,10 @@ class bark_mesh {
                 }
             }
             if (now.levels != 0 || passes.empty()) {
-                const std::uint64_t slots =
+                const std::uint64_t places =
                     4 * (passes.empty() ? std::uint64_t{p.elements} : passes.back().triangles);
                 passes.push_back({std::max(1u, now.levels),
-                                  options_.policy == padding::compact ? now.triangles : slots});
+                                  options_.policy == padding::compact ? now.triangles : places});
             }
             if (!split || levels == options_.most_passes || now.triangles > most ||
                 passes.back().triangles > most) {

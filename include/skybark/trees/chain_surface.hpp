@@ -192,8 +192,8 @@ class chain_surface {
         look_into(square);
         look_into(square + 1);
         if (containing_ == nothing) { // in another's hole, or on an edge
-            const std::vector<std::uint32_t> near = nearest(1e-9);
-            containing_ = near.empty() ? any_triangle(square) : near.front();
+            const std::vector<std::uint32_t> around = nearest(1e-9);
+            containing_ = around.empty() ? any_triangle(square) : around.front();
             centre_ = middle(containing_);
         }
     }

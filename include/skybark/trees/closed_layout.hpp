@@ -118,8 +118,8 @@ class closed_layout_builder {
             low = glm::min(low, e.position);
             high = glm::max(high, e.position);
         }
-        const glm::vec3 far = glm::max(glm::abs(low), glm::abs(high));
-        step_ = from_.empty() ? 0 : 4e-6f * std::max({far.x, far.y, far.z, 1e-3f});
+        const glm::vec3 farthest = glm::max(glm::abs(low), glm::abs(high));
+        step_ = from_.empty() ? 0 : 4e-6f * std::max({farthest.x, farthest.y, farthest.z, 1e-3f});
     }
 
     /// No ring so small that its corners, no segment so short that its rings are one place.

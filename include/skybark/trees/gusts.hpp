@@ -174,10 +174,10 @@ inline constexpr std::size_t most_waves = 65'536;
 
 /// The waves of a model. `below(n)` is, for each component (along, across, up), which part of its
 /// variance lies below the frequency n.
-template <class Below>
+template <class Generator>
 [[nodiscard]] std::vector<wave> draw_waves(const glm::dvec3& along, double speed,
                                            const turbulence_options& t, double lowest,
-                                           double highest, Below&& below) {
+                                           double highest, Generator&& below) {
     const glm::dvec3 up(0, 1, 0);
     const glm::dvec3 across = glm::cross(along, up);
     const double sigma = t.intensity * speed;
@@ -306,16 +306,16 @@ template <class Below>
                                                std::to_string(table.waves.size()) +
                                                " waves is too long; it takes at most 65536.");
     }
-    const auto small = [](const glm::dvec3& v, double most) { // false for what is not a number
+    const auto at_most = [](const glm::dvec3& v, double most) { // false for what is not a number
         return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;
     };
-    if (!small(table.mean, 1000)) {
+    if (!at_most(table.mean, 1000)) {
         return fail(error_code::bad_input, "The mean of a table of waves is beyond 1000 m/s.");
     }
     for (std::size_t i = 0; i < table.waves.size(); ++i) {
         const wave& w = table.waves[i];
-        if (!small(w.wave_vector, 1e6) || !small(w.amplitude, 1000) ||
-            !small({w.frequency, w.phase, 0}, 1e6)) {
+        if (!at_most(w.wave_vector, 1e6) || !at_most(w.amplitude, 1000) ||
+            !at_most({w.frequency, w.phase, 0}, 1e6)) {
             return fail(error_code::bad_input,
                         std::string("Wave ") + std::to_string(i) +
                             " of a table has an amplitude beyond 1000 m/s, or a frequency, phase "

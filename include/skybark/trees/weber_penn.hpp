@@ -435,7 +435,7 @@ class grower {
         const int children = s.level + 1 < p_.levels ? child_count(s) : 0;
         pcg32 child_random(s.seed ^ 0x9e3779b97f4a7c15u);
         walk(s, split_error_, [&](run& r, const piece& grown, pcg32&) {
-            emit(s, r, grown);
+            append(s, r, grown);
             const double part = s.length / l.curve_res;
             bear(s, r, grown, grown.segment * part, part, children, child_random);
             return segments_.size() <= most_;
@@ -630,7 +630,7 @@ class grower {
 
     /// Writes one piece as a segment; the foot of a flared trunk as several, since its radius
     /// changes within an eighth of its length.
-    void emit(const stem& s, run& r, const piece& grown) {
+    void append(const stem& s, run& r, const piece& grown) {
         const int res = level_of(p_, s.level).curve_res;
         const double z0 = static_cast<double>(grown.segment) / res;
         const double z1 = static_cast<double>(grown.segment + 1) / res;
@@ -647,8 +647,9 @@ class grower {
             piece_of_wood.radius = static_cast<float>(radius_at(s, z_to));
             piece_of_wood.parent = r.parent;
             r.parent = static_cast<std::uint32_t>(segments_.size());
-            constexpr double far = 1e9;
-            too_far_ = too_far_ || !(glm::length(to) < far) || !(std::abs(to.z * z_scale_) < far);
+            constexpr double farthest = 1e9;
+            too_far_ = too_far_ || !(glm::length(to) < farthest) ||
+                       !(std::abs(to.z * z_scale_) < farthest);
             segments_.push_back(piece_of_wood);
             piece_ends_.push_back(z_to);
             from = to;
