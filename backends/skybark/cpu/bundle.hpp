@@ -19,11 +19,12 @@ namespace skybark::cpu {
 
 /// Memory that bundles use again.
 struct bundle_scratch {
-    detail::scratch_memory placed;
-    detail::scratch_memory runs;
-    detail::scratch_memory ranges;
-    detail::scratch_memory bands;
-    bundles::grid grid;
+    const detail::memory_source* source = nullptr;
+    detail::scratch_memory placed{source};
+    detail::scratch_memory runs{source};
+    detail::scratch_memory ranges{source};
+    detail::scratch_memory bands{source};
+    bundles::grid grid = {};
 };
 
 /// Which instructions a bundle is resolved with; the fastest that the machine has, unless a test

@@ -33,6 +33,8 @@ struct device_options {
                          32768,
                          std::numeric_limits<std::uint32_t>::max(),
                          4096};
+    skybark::hooks hooks = {};
+    memory_hooks memory = {}; ///< the heap where there are none
 };
 
 class device {
@@ -45,13 +47,16 @@ class device {
 
     device() : device(device_options{}) {}
     explicit device(device_options options)
-        : jobs_(std::move(options.jobs)), limits_(options.limits) {
+        : jobs_(std::move(options.jobs)), limits_(options.limits),
+          source_(std::make_unique<detail::memory_source>(
+              detail::memory_source{options.memory, options.hooks})) {
         if (!jobs_) {
             const std::uint32_t threads = options.threads != 0
                                               ? options.threads
                                               : std::max(1u, std::thread::hardware_concurrency());
             pool_ = std::make_unique<thread_pool>(threads);
         }
+        say(log_level::info, [this] { return "The cpu device has " + device_name() + "."; });
     }
 
     [[nodiscard]] std::string_view name() const noexcept { return "cpu"; }
@@ -63,7 +68,7 @@ class device {
 
     [[nodiscard]] result<buffer> create_buffer(std::uint64_t bytes) {
         detail::memory memory =
-            bytes <= limits_.max_buffer_bytes ? detail::allocate_zeroed(bytes) : nullptr;
+            bytes <= limits_.max_buffer_bytes ? allocate("a buffer", bytes) : nullptr;
         if (!memory) {
             return fail(error_code::out_of_memory,
                         "The cpu backend could not allocate a buffer of " + std::to_string(bytes) +
@@ -83,7 +88,7 @@ class device {
         }
         const std::uint64_t bytes =
             std::uint64_t{what.width} * what.height * bytes_per_pixel(what.format);
-        detail::memory memory = detail::allocate_zeroed(bytes);
+        detail::memory memory = allocate("an image", bytes);
         if (!memory) {
             return fail(error_code::out_of_memory,
                         "The cpu backend could not allocate an image of " + size + " pixels.");
@@ -103,7 +108,7 @@ class device {
                                                        ".");
         }
         detail::memory memory = what.size_bytes() <= detail::memory_of_machine()
-                                    ? detail::allocate_zeroed(what.size_bytes())
+                                    ? allocate("a volume", what.size_bytes())
                                     : nullptr;
         if (!memory) {
             return fail(error_code::out_of_memory,
@@ -115,22 +120,26 @@ class device {
 
     [[nodiscard]] result<void> upload(const buffer& to, std::uint64_t offset,
                                       std::span<const std::byte> bytes) {
+        const zone here(hooks(), "upload");
         copy_bytes(to.data() + offset, bytes.data(), bytes.size());
         traffic_.up += bytes.size();
         return {};
     }
     [[nodiscard]] result<void> download(const buffer& from, std::uint64_t offset,
                                         std::span<std::byte> bytes) {
+        const zone here(hooks(), "download");
         copy_bytes(bytes.data(), from.data() + offset, bytes.size());
         traffic_.down += bytes.size();
         return {};
     }
     [[nodiscard]] result<void> upload(const image& to, std::span<const std::byte> bytes) {
+        const zone here(hooks(), "upload");
         copy_bytes(to.data(), bytes.data(), std::min<std::uint64_t>(bytes.size(), to.size_bytes()));
         traffic_.up += bytes.size();
         return {};
     }
     [[nodiscard]] result<void> download(const image& from, std::span<std::byte> bytes) {
+        const zone here(hooks(), "download");
         copy_bytes(bytes.data(), from.data(),
                    std::min<std::uint64_t>(bytes.size(), from.size_bytes()));
         traffic_.down += bytes.size();
@@ -138,11 +147,13 @@ class device {
     }
 
     [[nodiscard]] result<void> upload(const volume& to, std::span<const std::byte> bytes) {
+        const zone here(hooks(), "upload");
         copy_bytes(to.data(), bytes.data(), std::min<std::uint64_t>(bytes.size(), to.size_bytes()));
         traffic_.up += bytes.size();
         return {};
     }
     [[nodiscard]] result<void> download(const volume& from, std::span<std::byte> bytes) {
+        const zone here(hooks(), "download");
         copy_bytes(bytes.data(), from.data(),
                    std::min<std::uint64_t>(bytes.size(), from.size_bytes()));
         traffic_.down += bytes.size();
@@ -151,6 +162,8 @@ class device {
 
     [[nodiscard]] result<cpu::recorder> begin();
     [[nodiscard]] result<void> submit(cpu::recorder& recorder);
+
+    [[nodiscard]] const skybark::hooks& hooks() const noexcept { return source_->hooks; }
 
     /// How many tasks it is worth cutting work into, where each has memory of its own.
     [[nodiscard]] std::uint32_t workers() const {
@@ -197,28 +210,40 @@ class device {
         }
     }
 
+    template <class Text>
+    void say(log_level level, Text&& text) const {
+        log(source_->hooks, level, text);
+    }
+
+    [[nodiscard]] detail::memory allocate(const char* what, std::uint64_t bytes) const {
+        detail::memory made = detail::allocate_zeroed(source_->memory, bytes);
+        say(made ? log_level::debug : log_level::warning, [&] {
+            return std::string("The cpu device ") + (made ? "has made " : "could not make ") +
+                   what + " of " + std::to_string(bytes) + " bytes.";
+        });
+        return made;
+    }
+
     static constexpr std::uint64_t kept_blocks = 128;
     static constexpr std::uint64_t kept_bytes = 147456; // 1,024 triangles of 48-byte vertices
 
     /// Room for kept_blocks blocks, made when first asked for; null where there is no memory.
     [[nodiscard]] std::byte* kept_memory() {
-        if (!kept_) {
-            kept_ = detail::allocate_zeroed(kept_blocks * kept_bytes);
-        }
-        return kept_ ? detail::align_up(kept_.get()) : nullptr;
+        return kept_.room_for<std::byte>(kept_blocks * kept_bytes);
     }
 
     parallel_for jobs_;
     std::unique_ptr<thread_pool> pool_;
     device_limits limits_;
     device_traffic traffic_;
-    detail::memory kept_;
-    raster_scratch raster_;
-    layer_scratch layers_;
-    sort_scratch sort_;
-    peel_scratch peel_;
-    bundle_scratch bundle_;
-    std::vector<std::uint64_t> counts_;
+    std::unique_ptr<detail::memory_source> source_;
+    detail::scratch_memory kept_{source_.get()};
+    detail::scratch_memory counts_{source_.get()};
+    raster_scratch raster_{source_.get()};
+    layer_scratch layers_{source_.get()};
+    sort_scratch sort_{source_.get()};
+    peel_scratch peel_{source_.get()};
+    bundle_scratch bundle_{source_.get()};
 };
 
 /// Appends patterns; on this backend each is done when its call returns. One that has no memory to
@@ -230,18 +255,21 @@ class recorder {
     explicit recorder(device& on) : device_(&on) {}
 
     void upload(const buffer_view<device>& to, std::span<const std::byte> bytes) {
+        const zone here(device_->hooks(), "upload");
         device::copy_bytes(to.buffer->data() + to.offset, bytes.data(),
                            std::min<std::uint64_t>(bytes.size(), to.size));
         device_->traffic_.up += bytes.size();
     }
 
     void copy(const buffer_view<device>& from, const buffer_view<device>& to) {
+        const zone here(device_->hooks(), "copy");
         device::copy_bytes(to.buffer->data() + to.offset, from.buffer->data() + from.offset,
                            std::min(from.size, to.size));
     }
 
     template <map_kernel K>
     void map(const K& kernel, const bindings<device, K>& buffers, range elements) {
+        const zone here(device_->hooks(), zone_name<pattern::map, K>());
         with_spans<K>(buffers, [&](auto... spans) {
             device_->for_pieces(
                 elements.count, 1024, [&](std::uint64_t first, std::uint64_t count) {
@@ -268,6 +296,7 @@ class recorder {
     template <strip_kernel K>
     void expand(const K& kernel, const bindings<device, K>& buffers, range elements,
                 const triangle_list<device>& out) {
+        const zone here(device_->hooks(), zone_name<pattern::expand, K>());
         with_spans<K>(buffers, [&](auto... spans) {
             if (out.policy == padding::degenerate) {
                 expand_degenerate(kernel, elements, out, spans...);
@@ -286,6 +315,7 @@ class recorder {
     template <ring_kernel K>
     void expand_rings(const K& kernel, const bindings<device, K>& buffers, range elements,
                       const buffer_view<device>& vertices) {
+        const zone here(device_->hooks(), zone_name<pattern::expand_rings, K>());
         const std::uint64_t stride =
             std::uint64_t{kernel.ring_vertices()} * sizeof(typename K::vertex);
         const std::uint64_t room = stride == 0 ? 0 : vertices.size / stride;
@@ -305,9 +335,12 @@ class recorder {
     void draw(const K& kernel, const bindings<device, K>& buffers,
               const image_bindings<device, K>& images, const draw_geometry<device>& geometry,
               const draw_target<device>& target, draw_state state) {
+        const zone here(device_->hooks(), zone_name<pattern::draw, K>());
         with_spans<K>(buffers, [&](auto... spans) {
-            rasterise(*device_, device_->raster_, kernel, images, grids{}, geometry, target, state,
-                      spans...);
+            if (going() && !rasterise(*device_, device_->raster_, kernel, images, grids{}, geometry,
+                                      target, state, spans...)) {
+                out_of_memory("draw");
+            }
         });
     }
 
@@ -317,15 +350,20 @@ class recorder {
               const image_bindings<device, K>& images, const volume_bindings<device, K>& volumes,
               const draw_geometry<device>& geometry, const draw_target<device>& target,
               draw_state state) {
+        const zone here(device_->hooks(), zone_name<pattern::draw, K>());
         with_spans<K>(buffers, [&](auto... spans) {
-            rasterise(*device_, device_->raster_, kernel, images, grids::of<device, K>(volumes),
-                      geometry, target, state, spans...);
+            if (going() &&
+                !rasterise(*device_, device_->raster_, kernel, images,
+                           grids::of<device, K>(volumes), geometry, target, state, spans...)) {
+                out_of_memory("draw");
+            }
         });
     }
 
     template <peel_kernel K>
     void peel(const K& kernel, const bindings<device, K>& buffers, range triangles,
               const peeled_layer<device>& layer) {
+        const zone here(device_->hooks(), zone_name<pattern::peel, K>());
         with_spans<K>(buffers, [&](auto... spans) {
             if (going() &&
                 !peel_layer(*device_, device_->peel_, kernel, triangles, layer, spans...)) {
@@ -335,6 +373,7 @@ class recorder {
     }
 
     void resolve(const ray_bundle& bundle, const bundle_work<device>& work) {
+        const zone here(device_->hooks(), "resolve");
         if (going() && !resolve_bundle(*device_, device_->bundle_, bundle, work)) {
             out_of_memory("resolve");
         }
@@ -343,6 +382,7 @@ class recorder {
     template <grid_map_kernel K>
     void map(const K& kernel, const bindings<device, K>& buffers,
              const volume_bindings<device, K>& volumes, range elements) {
+        const zone here(device_->hooks(), zone_name<pattern::map, K>());
         with_spans<K>(buffers, [&](auto... spans) {
             const grids bound = grids::of<device, K>(volumes);
             device_->for_pieces(elements.count, 256, [&](std::uint64_t first, std::uint64_t count) {
@@ -357,6 +397,7 @@ class recorder {
     template <voxel_kernel K>
     void map_voxels(const K& kernel, const bindings<device, K>& buffers,
                     const volume_bindings<device, K>& volumes, glm::uvec3 extent) {
+        const zone here(device_->hooks(), zone_name<pattern::map_voxels, K>());
         if (extent.x == 0 || extent.y == 0) {
             return;
         }
@@ -379,6 +420,7 @@ class recorder {
     template <slab_kernel K>
     void accumulate(const K& kernel, const bindings<device, K>& buffers, range elements,
                     const accumulation<device>& how) {
+        const zone here(device_->hooks(), zone_name<pattern::accumulate, K>());
         with_spans<K>(buffers, [&](auto... spans) {
             typename bins_of<K, decltype(spans)...>::type bins(kernel, spans...);
             if (going() && !accumulate_layers(*device_, device_->layers_, bins, elements, *how.into,
@@ -397,6 +439,7 @@ class recorder {
     template <slab_kernel K>
     void accumulate_scan(const K& kernel, const bindings<device, K>& buffers, range elements,
                          const volume& scratch, const volume& to, const volume_scan& how) {
+        const zone here(device_->hooks(), zone_name<pattern::accumulate_scan, K>());
         with_spans<K>(buffers, [&](auto... spans) {
             typename bins_of<K, decltype(spans)...>::type bins(kernel, spans...);
             if (how.axis != scan_axis::y || elements.count > bins.batch()) {
@@ -410,12 +453,14 @@ class recorder {
     }
 
     void scan(const volume& from, const volume& to, const volume_scan& how) {
+        const zone here(device_->hooks(), "scan volume");
         if (going()) {
             scan_volume(*device_, from, to, how);
         }
     }
 
     void scan(const buffer_view<device>& words, const buffer_view<device>& total) {
+        const zone here(device_->hooks(), "scan");
         std::uint32_t sum = 0;
         if (going() && !scan_words(*device_, device_->sort_, words_of(words), sum)) {
             out_of_memory("scan");
@@ -449,6 +494,7 @@ class recorder {
 
     void sort_first(const buffer_view<device>& keys, const buffer_view<device>& values,
                     std::uint64_t most, std::uint32_t key_bits) {
+        const zone here(device_->hooks(), "sort");
         const auto k = words_of(keys);
         const auto v = words_of(values);
         const std::size_t count = std::min<std::uint64_t>({k.size(), v.size(), most});
@@ -525,8 +571,11 @@ class recorder {
         // Offsets of blocks, not of elements: 1/64 of the memory, and the count is cheap.
         constexpr std::uint32_t block = keeps<K> ? 16 : 64;
         const std::uint64_t blocks = (std::uint64_t{elements.count} + block - 1) / block;
-        std::vector<std::uint64_t>& offsets = device_->counts_;
-        offsets.assign(blocks + 1, 0);
+        auto* const offsets = device_->counts_.room_for<std::uint64_t>(blocks + 1);
+        if (offsets == nullptr) {
+            return out_of_memory("expand");
+        }
+        offsets[0] = 0;
         std::byte* const kept = keeps<K> && room != 0 ? device_->kept_memory() : nullptr;
         const std::uint64_t wave =
             kept != nullptr ? kept_blocks : std::max<std::uint64_t>(1, blocks);
@@ -605,6 +654,7 @@ class recorder {
 
 inline result<recorder> device::begin() { return recorder(*this); }
 inline result<void> device::submit(recorder& done) {
+    const zone here(hooks(), "submit");
     if (done.error_) {
         return failure(*done.error_);
     }

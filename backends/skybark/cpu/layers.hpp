@@ -15,10 +15,12 @@ namespace skybark::cpu {
 
 /// Memory that accumulations use again.
 struct layer_scratch {
-    detail::scratch_memory counts; ///< slabs of a piece of the elements in a layer, later offsets
-    detail::scratch_memory slabs;  ///< by layer
-    detail::scratch_memory parts;  ///< what slabs have in common
-    detail::scratch_memory planes; ///< a layer for each thread
+    const detail::memory_source* source = nullptr;
+    detail::scratch_memory counts{
+        source}; ///< slabs of a piece of the elements in a layer, later offsets
+    detail::scratch_memory slabs{source};  ///< by layer
+    detail::scratch_memory parts{source};  ///< what slabs have in common
+    detail::scratch_memory planes{source}; ///< a layer for each thread
 };
 
 /// The slabs of a batch of elements, by layer.

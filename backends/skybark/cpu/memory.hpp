@@ -2,11 +2,13 @@
 // Buffers, images and volumes of the CPU backend: plain memory, ours or the caller's.
 
 #include <skybark/core/backend.hpp>
+#include <skybark/core/hooks.hpp>
 
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <type_traits>
 
 #if __has_include(<sys/mman.h>)
 #    include <sys/mman.h>
@@ -20,9 +22,29 @@ namespace skybark::cpu {
 /// Vertices are stored past the cache in 16-byte pieces, and lines are 64 bytes.
 inline constexpr std::size_t memory_alignment = 64;
 
+/// Where a device's memory comes from: buffers, images, volumes, and what patterns keep to work in.
+/// Both or none. Called on the thread that calls the device, except that draws may ask for memory
+/// in their tasks; and on whatever thread destroys a buffer, an image or a volume.
+struct memory_hooks {
+    void* user = nullptr; ///< given to both
+    /// `bytes` bytes, of any content, aligned to `alignment` (64), or null where there are none.
+    void* (*allocate)(void* user, std::size_t bytes, std::size_t alignment) = nullptr;
+    /// What `allocate` returned, and what it was asked for.
+    void (*free)(void* user, void* memory, std::size_t bytes, std::size_t alignment) = nullptr;
+};
+
 namespace detail {
 struct free_memory {
-    void operator()(void* memory) const noexcept { std::free(memory); }
+    memory_hooks hooks = {};
+    std::size_t bytes = 0;
+
+    void operator()(void* memory) const noexcept {
+        if (hooks.allocate != nullptr) {
+            hooks.free(hooks.user, memory, bytes, memory_alignment);
+        } else {
+            std::free(memory);
+        }
+    }
 };
 using memory = std::unique_ptr<void, free_memory>;
 
@@ -41,6 +63,30 @@ using memory = std::unique_ptr<void, free_memory>;
 #endif
     return made;
 }
+
+/// Memory of a caller's, of undefined content. As much more as ours has: reads may go too far.
+[[nodiscard]] inline memory allocate_from(const memory_hooks& from, std::size_t bytes) {
+    const std::size_t wanted = bytes + memory_alignment;
+    return memory(from.allocate(from.user, wanted, memory_alignment), free_memory{from, wanted});
+}
+
+/// The same from wherever a device has its memory.
+[[nodiscard]] inline memory allocate_zeroed(const memory_hooks& from, std::size_t bytes) {
+    if (from.allocate == nullptr) {
+        return allocate_zeroed(bytes);
+    }
+    memory made = allocate_from(from, bytes);
+    if (made) {
+        std::memset(made.get(), 0, bytes);
+    }
+    return made;
+}
+
+/// What a device's parts have in common. It stays where it is when the device moves.
+struct memory_source {
+    memory_hooks memory;
+    skybark::hooks hooks;
+};
 
 [[nodiscard]] inline std::byte* align_up(void* pointer) {
     void* aligned = pointer;
@@ -73,6 +119,9 @@ inline void fetch([[maybe_unused]] const void* what) {
 /// Memory that calls use again. It grows and never shrinks.
 class scratch_memory {
   public:
+    scratch_memory() = default;
+    explicit scratch_memory(const memory_source* source) : source_(source) {}
+
     /// Room for `count` values, of undefined content; null where there is no memory.
     template <class T>
     [[nodiscard]] T* room_for(std::uint64_t count) {
@@ -83,15 +132,76 @@ class scratch_memory {
         if (!owned_ || bytes > size_) {
             owned_.reset();
             size_ = std::max<std::uint64_t>(bytes, std::min(most_bytes, size_ + size_ / 2));
-            owned_ = allocate_zeroed(size_);
+            owned_ = allocate(size_);
         }
         return owned_ ? reinterpret_cast<T*>(align_up(owned_.get())) : nullptr;
     }
 
   private:
     static constexpr std::uint64_t most_bytes = std::uint64_t{1} << 46;
+
+    [[nodiscard]] memory allocate(std::uint64_t bytes) const {
+        if (source_ == nullptr) {
+            return allocate_zeroed(bytes);
+        }
+        memory made = source_->memory.allocate != nullptr ? allocate_from(source_->memory, bytes)
+                                                          : allocate_zeroed(bytes);
+        log(source_->hooks, made ? log_level::debug : log_level::warning, [&] {
+            return std::string("The cpu device ") + (made ? "keeps " : "could not have ") +
+                   std::to_string(bytes) + " bytes to work in.";
+        });
+        return made;
+    }
+
+    const memory_source* source_ = nullptr; ///< null: the heap
     memory owned_;
     std::uint64_t size_ = 0;
+};
+
+/// A list that grows, and keeps its room when it is cleared. It may be filled in a task: it logs
+/// nothing.
+template <class T>
+class kept_list {
+    static_assert(std::is_trivially_copyable_v<T>);
+
+  public:
+    explicit kept_list(const memory_source* source) : source_(source) {}
+
+    void clear() noexcept { size_ = 0; }
+    /// Left out where there is no memory: see `complete`.
+    void push_back(const T& value) {
+        if (size_ < room_ || grow()) {
+            data_[size_++] = value;
+        }
+    }
+    [[nodiscard]] bool complete() const noexcept { return complete_; }
+    [[nodiscard]] const T* begin() const noexcept { return data_; }
+    [[nodiscard]] const T* end() const noexcept { return data_ + size_; }
+
+  private:
+    [[nodiscard]] bool grow() {
+        const std::size_t room = std::max<std::size_t>(64, 2 * room_);
+        memory larger = source_ != nullptr && source_->memory.allocate != nullptr
+                            ? allocate_from(source_->memory, room * sizeof(T))
+                            : allocate_zeroed(room * sizeof(T));
+        if (!larger) {
+            complete_ = false;
+            return false;
+        }
+        T* const to = reinterpret_cast<T*>(align_up(larger.get()));
+        std::copy(begin(), end(), to);
+        owned_ = std::move(larger);
+        data_ = to;
+        room_ = room;
+        return true;
+    }
+
+    const memory_source* source_;
+    memory owned_;
+    T* data_ = nullptr;
+    std::size_t size_ = 0;
+    std::size_t room_ = 0;
+    bool complete_ = true;
 };
 } // namespace detail
 

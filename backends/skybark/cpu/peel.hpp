@@ -19,10 +19,11 @@ namespace skybark::cpu {
 
 /// Memory that peels use again.
 struct peel_scratch {
-    detail::scratch_memory triangles;
-    detail::scratch_memory counts;
-    detail::scratch_memory entries;
-    detail::scratch_memory depths;
+    const detail::memory_source* source = nullptr;
+    detail::scratch_memory triangles{source};
+    detail::scratch_memory counts{source};
+    detail::scratch_memory entries{source};
+    detail::scratch_memory depths{source};
 };
 
 namespace peeling {

@@ -32,16 +32,17 @@ struct screen_triangle {
 
 /// Neighbouring triangles of a draw, and the rows that they touch, so that bands skip them at once.
 struct screen_piece {
-    std::vector<screen_triangle> triangles;
+    detail::kept_list<screen_triangle> triangles;
     std::int64_t y_least = 0; ///< 1/256 pixel
     std::int64_t y_most = 0;
 };
 
 /// Memory that draws use again.
 struct raster_scratch {
-    std::vector<glm::vec4> clip;
-    std::vector<glm::vec4> varyings;
-    std::vector<screen_piece> pieces;
+    const detail::memory_source* source = nullptr;
+    detail::scratch_memory clip{source};
+    detail::scratch_memory varyings{source};
+    std::vector<screen_piece> pieces = {};
 };
 
 namespace raster {
@@ -132,7 +133,7 @@ struct viewport {
 /// Projects three corners and keeps the triangle if it covers anything.
 inline void project(const corner* c0, const corner* c1, const corner* c2,
                     const std::uint32_t (&vertex)[3], viewport size, cull_mode cull, bool clipped,
-                    std::vector<screen_triangle>& out) {
+                    detail::kept_list<screen_triangle>& out) {
     screen_triangle t;
     const corner* corners[3] = {c0, c1, c2};
     const auto fixed = [](float pixels) {
@@ -187,7 +188,7 @@ inline void project(const corner* c0, const corner* c1, const corner* c2,
 
 /// Clips a triangle of shaded vertices and keeps what is left of it.
 inline void set_up(const glm::vec4* clip, const std::uint32_t (&vertex)[3], viewport size,
-                   cull_mode cull, std::vector<screen_triangle>& out) {
+                   cull_mode cull, detail::kept_list<screen_triangle>& out) {
     const glm::vec4& a = clip[vertex[0]];
     const glm::vec4& b = clip[vertex[1]];
     const glm::vec4& c = clip[vertex[2]];
@@ -392,12 +393,13 @@ void clear(Device& device, const draw_target<Device>& target, viewport size) {
 
 } // namespace raster
 
-/// Draws triangles with kernel `K`: see the contract in skybark/core/backend.hpp.
+/// Draws triangles with kernel `K`: see the contract in skybark/core/backend.hpp. False where there
+/// is no memory to do it in.
 template <class Device, draw_kernel K, class... Spans>
-void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
-               const image_bindings<Device, K>& images, const grids& volumes,
-               const draw_geometry<Device>& geometry, const draw_target<Device>& target,
-               draw_state state, Spans... spans) {
+[[nodiscard]] bool rasterise(Device& device, raster_scratch& scratch, const K& kernel,
+                             const image_bindings<Device, K>& images, const grids& volumes,
+                             const draw_geometry<Device>& geometry,
+                             const draw_target<Device>& target, draw_state state, Spans... spans) {
     using namespace raster;
     using varyings = std::array<glm::vec4, K::varyings>;
     const image* sized = target.color != nullptr ? target.color : target.depth;
@@ -416,6 +418,7 @@ void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
         return geometry.base_vertex + (indices.empty() ? i : indices[i]);
     };
     const image_reader reader(images, volumes);
+    glm::vec4* shaded = nullptr; // varyings, vertex by vertex
     float* const depth =
         target.depth != nullptr ? reinterpret_cast<float*>(target.depth->data()) : nullptr;
 
@@ -433,7 +436,7 @@ void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
         const glm::vec3 w = vertex_weights(t, b);
         const glm::vec4* corner[3];
         for (int i = 0; i < 3; ++i) {
-            corner[i] = scratch.varyings.data() + std::size_t{t.vertex[i]} * K::varyings;
+            corner[i] = shaded + std::size_t{t.vertex[i]} * K::varyings;
         }
         for (std::size_t i = 0; i < K::varyings; ++i) {
             in[i] = corner[0][i] * w.x + corner[1][i] * w.y + corner[2][i] * w.z;
@@ -468,21 +471,25 @@ void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
         }
         const bool shared = most - least < 3 * triangles;
         const std::uint32_t vertices = shared ? most - least + 1 : 3 * triangles;
-        scratch.clip.resize(vertices);
-        scratch.varyings.resize(std::size_t{vertices} * K::varyings);
+        auto* const clip = scratch.clip.room_for<glm::vec4>(vertices);
+        shaded = scratch.varyings.room_for<glm::vec4>(std::uint64_t{vertices} * K::varyings);
+        if (clip == nullptr || shaded == nullptr) {
+            return false;
+        }
         device.for_pieces(vertices, 1024, [&](std::uint64_t begin, std::uint64_t n) {
             for (std::uint64_t v = begin; v < begin + n; ++v) {
                 const auto i = static_cast<std::uint32_t>(v);
                 varyings out{};
-                scratch.clip[v] =
+                clip[v] =
                     kernel.vertex(shared ? least + i : vertex_number(first + i), out, spans...);
-                std::copy(out.begin(), out.end(),
-                          scratch.varyings.begin() + static_cast<std::ptrdiff_t>(v * K::varyings));
+                std::copy(out.begin(), out.end(), shaded + v * K::varyings);
             }
         });
 
         const std::uint32_t pieces = (triangles + piece_triangles - 1) / piece_triangles;
-        scratch.pieces.resize(std::max<std::size_t>(scratch.pieces.size(), pieces));
+        while (scratch.pieces.size() < pieces) {
+            scratch.pieces.push_back({detail::kept_list<screen_triangle>(scratch.source)});
+        }
         device.parallel(pieces, [&](std::uint32_t p) {
             screen_piece& piece = scratch.pieces[p];
             piece.triangles.clear();
@@ -492,7 +499,7 @@ void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
                 for (std::uint32_t k = 0; k < 3; ++k) {
                     vertex[k] = shared ? vertex_number(first + 3 * t + k) - least : 3 * t + k;
                 }
-                set_up(scratch.clip.data(), vertex, size, state.cull, piece.triangles);
+                set_up(clip, vertex, size, state.cull, piece.triangles);
             }
             piece.y_least = std::numeric_limits<std::int64_t>::max();
             piece.y_most = std::numeric_limits<std::int64_t>::min();
@@ -502,6 +509,12 @@ void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
             }
         });
 
+        for (std::uint32_t p = 0; p < pieces; ++p) {
+            if (!scratch.pieces[p].triangles.complete()) {
+                scratch.pieces.clear();
+                return false;
+            }
+        }
         const std::uint32_t bands = (size.height + band_rows - 1) / band_rows;
         device.parallel(bands, [&](std::uint32_t band) {
             const std::int64_t row_first = std::int64_t{band} * band_rows;
@@ -520,6 +533,7 @@ void rasterise(Device& device, raster_scratch& scratch, const K& kernel,
             }
         });
     }
+    return true;
 }
 
 } // namespace skybark::cpu

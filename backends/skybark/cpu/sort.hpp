@@ -10,8 +10,9 @@ namespace skybark::cpu {
 
 /// Memory that sorts and running sums use again.
 struct sort_scratch {
-    detail::scratch_memory pairs;
-    detail::scratch_memory counts;
+    const detail::memory_source* source = nullptr;
+    detail::scratch_memory pairs{source};
+    detail::scratch_memory counts{source};
 };
 
 namespace radix {
