@@ -5,6 +5,7 @@
     vec4 low; vec4 high; float repeats_around; float repeats_along; float strength;
 #include "../skeletons/parameters.glsl"
 #include "../shared/shading.glsl"
+#include "../shared/surfaces.glsl"
 #include "scene.glsl.inc"
 layout(std430, binding = 0) readonly buffer vertices_buffer { vec4 vertices[]; };
 layout(std430, binding = 1) readonly buffer scene_buffer { scene_record scene; };
@@ -21,21 +22,14 @@ vec4 kernel_vertex(uint index) {
 bool kernel_fragment(vec2 pixel, bool front) {
     vec3 position = varying_in[0].xyz;
     vec3 geometric = normalize(varying_in[1].xyz);
-    vec4 tangent = varying_in[2];
     vec4 texel = textureLod(kernel_images[1], vec2(varying_in[0].w * repeats_around,
                                                    varying_in[1].w * repeats_along), 0.0);
-    vec3 albedo = mix(low.xyz, high.xyz, texel.w);
-    // Across the normal: interpolated tangents lean, and may vanish.
-    vec3 across = tangent.xyz - geometric * dot(geometric, tangent.xyz);
-    vec3 t = across * (1.0 / sqrt(max(dot(across, across), 1e-12)));
-    vec3 b = cross(geometric, t) * tangent.w;
-    float slope = strength * min(abs(tangent.w), 1.0);
-    vec3 n = normalize(geometric * (texel.z * 2.0 - 1.0) + t * ((texel.x * 2.0 - 1.0) * slope) +
-                       b * ((texel.y * 2.0 - 1.0) * slope));
+    bark_surface surface =
+        bark_surface_of(texel, geometric, varying_in[2], low.xyz, high.xyz, strength);
     vec3 ambient = ambient_light(scene.ambient[0], scene.ambient[1], scene.ambient[2],
-                                 scene.ambient[3], n);
+                                 scene.ambient[3], surface.normal);
     float sun = dot(geometric, scene.sky.to_sun.xyz) > 0.0 ? sun_at(scene, position, geometric) : 0.0;
-    color_out = vec4(lit(albedo, n, scene.sky, sun, ambient), 1.0);
+    color_out = vec4(lit(surface.albedo, surface.normal, scene.sky, sun, ambient), 1.0);
     return true;
 }
 #endif

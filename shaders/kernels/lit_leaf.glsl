@@ -4,7 +4,7 @@
 #define KERNEL_PARAMETERS float through; float sky;
 #include "../skeletons/parameters.glsl"
 #include "../shared/shading.glsl"
-#include "../shared/leaf.glsl"
+#include "../shared/surfaces.glsl"
 #include "scene.glsl.inc"
 layout(std430, binding = 0) readonly buffer vertices_buffer { vec4 vertices[]; };
 layout(std430, binding = 1) readonly buffer scene_buffer { scene_record scene; };
@@ -33,12 +33,9 @@ bool kernel_fragment(vec2 pixel, bool front) {
     float sun = sun_at(scene, position, facing > 0.0 ? n : -n);
     vec3 here = ambient_of(n) * sky;
     vec3 behind = ambient_of(-n) * sky;
-    vec3 albedo = vec3(leaf_linear(texel.x), leaf_linear(texel.y), leaf_linear(texel.z));
-    vec3 passed = albedo * vec3(1.1, 1.0, 0.3) * through;
     vec3 light = scene.sky.sunlight.xyz * sun;
-    color_out = vec4(leaf_lit(albedo.x, passed.x, light.x, facing, here.x, behind.x),
-                     leaf_lit(albedo.y, passed.y, light.y, facing, here.y, behind.y),
-                     leaf_lit(albedo.z, passed.z, light.z, facing, here.z, behind.z), 1.0);
+    color_out = vec4(leaf_surface_lit(leaf_surface_of(texel, through), light, facing, here, behind),
+                     1.0);
     return true;
 }
 #endif

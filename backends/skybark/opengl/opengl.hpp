@@ -45,7 +45,10 @@
 #include <skybark/opengl/programs/lit_grid.hpp>
 #include <skybark/opengl/programs/lit_leaf.hpp>
 #include <skybark/opengl/programs/lit_puff.hpp>
+#include <skybark/opengl/programs/meadow_bark.hpp>
 #include <skybark/opengl/programs/meadow_ground.hpp>
+#include <skybark/opengl/programs/meadow_land.hpp>
+#include <skybark/opengl/programs/meadow_leaf.hpp>
 #include <skybark/opengl/programs/merge_chains.hpp>
 #include <skybark/opengl/programs/merge_ends.hpp>
 #include <skybark/opengl/programs/particle_impulse.hpp>

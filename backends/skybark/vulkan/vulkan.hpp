@@ -42,7 +42,10 @@
 #include <skybark/vulkan/programs/lit_grid.hpp>
 #include <skybark/vulkan/programs/lit_leaf.hpp>
 #include <skybark/vulkan/programs/lit_puff.hpp>
+#include <skybark/vulkan/programs/meadow_bark.hpp>
 #include <skybark/vulkan/programs/meadow_ground.hpp>
+#include <skybark/vulkan/programs/meadow_land.hpp>
+#include <skybark/vulkan/programs/meadow_leaf.hpp>
 #include <skybark/vulkan/programs/merge_chains.hpp>
 #include <skybark/vulkan/programs/merge_ends.hpp>
 #include <skybark/vulkan/programs/particle_impulse.hpp>

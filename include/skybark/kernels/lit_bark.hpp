@@ -2,6 +2,7 @@
 // lit_bark: draws branch surfaces with bark from a normal map, in sun, shadow and sky light.
 
 #include <skybark/kernels/scene.hpp>
+#include <skybark/shared/surfaces.hpp>
 
 namespace skybark::kernels {
 
@@ -35,20 +36,14 @@ struct lit_bark {
         const glm::vec3 geometric = glm::normalize(glm::vec3(in[1]));
         const glm::vec4 texel =
             maps.sample(1, glm::vec2(in[0].w * repeats_around, in[1].w * repeats_along));
-        const glm::vec3 albedo = glm::mix(glm::vec3(low), glm::vec3(high), texel.w);
-        // Across the normal: interpolated tangents lean, and may vanish.
-        const glm::vec3 across =
-            glm::vec3(in[2]) - geometric * glm::dot(geometric, glm::vec3(in[2]));
-        const glm::vec3 t = across * (1.0f / glm::sqrt(glm::max(glm::dot(across, across), 1e-12f)));
-        const glm::vec3 b = glm::cross(geometric, t) * in[2].w;
-        const float slope = strength * glm::min(glm::abs(in[2].w), 1.0f);
-        const glm::vec3 n = glm::normalize(geometric * (texel.z * 2.0f - 1.0f) +
-                                           t * ((texel.x * 2.0f - 1.0f) * slope) +
-                                           b * ((texel.y * 2.0f - 1.0f) * slope));
+        const auto surface = shared::bark_surface_of(texel, geometric, in[2], glm::vec3(low),
+                                                     glm::vec3(high), strength);
         const glm::vec3 to_sun(scene[0].sky.to_sun);
         const float sun =
             glm::dot(geometric, to_sun) > 0.0f ? sun_at(scene[0], position, geometric, maps) : 0.0f;
-        return {glm::vec4(shared::lit(albedo, n, scene[0].sky, sun, ambient_of(scene[0], n)), 1.0f),
+        return {glm::vec4(shared::lit(surface.albedo, surface.normal, scene[0].sky, sun,
+                                      ambient_of(scene[0], surface.normal)),
+                          1.0f),
                 true};
     }
 };

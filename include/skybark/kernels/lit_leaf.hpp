@@ -2,7 +2,7 @@
 // lit_leaf: draws leaves cut out of their pictures, in sun, shadow and sky light, from both sides.
 
 #include <skybark/kernels/scene.hpp>
-#include <skybark/shared/leaf.hpp>
+#include <skybark/shared/surfaces.hpp>
 
 namespace skybark::kernels {
 
@@ -39,13 +39,9 @@ struct lit_leaf {
         const float sun = sun_at(scene[0], position, facing > 0.0f ? n : -n, pictures);
         const glm::vec3 here = ambient_of(scene[0], n) * sky;
         const glm::vec3 behind = ambient_of(scene[0], -n) * sky;
-        const glm::vec3 albedo(shared::leaf_linear(texel.x), shared::leaf_linear(texel.y),
-                               shared::leaf_linear(texel.z));
-        const glm::vec3 passed = albedo * glm::vec3(1.1f, 1.0f, 0.3f) * through;
         const glm::vec3 light = glm::vec3(scene[0].sky.sunlight) * sun;
-        return {glm::vec4(shared::leaf_lit(albedo.x, passed.x, light.x, facing, here.x, behind.x),
-                          shared::leaf_lit(albedo.y, passed.y, light.y, facing, here.y, behind.y),
-                          shared::leaf_lit(albedo.z, passed.z, light.z, facing, here.z, behind.z),
+        return {glm::vec4(shared::leaf_surface_lit(shared::leaf_surface_of(texel, through), light,
+                                                   facing, here, behind),
                           1.0f),
                 true};
     }

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f8339aa95015a967d07caa32b95f72ee109891ec053d90a557737cbcb2d67767
+// sha256 419975f192e59a22998571e49cb85d96fb4e2fbb617a471c59d1145ecdcef86d
 #pragma once
 
 #include <skybark/kernels/lit_bark.hpp>
@@ -283,6 +283,278 @@ float srgb_encode(float x) {
 float display(float x) {
     return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
 }
+vec3 quaternion_x(vec4 q) {
+    return vec3(1.0f - 2.0f * (q.y * q.y + q.z * q.z), 2.0f * (q.x * q.y + q.w * q.z),
+                2.0f * (q.x * q.z - q.w * q.y));
+}
+vec3 quaternion_y(vec4 q) {
+    return vec3(2.0f * (q.x * q.y - q.w * q.z), 1.0f - 2.0f * (q.x * q.x + q.z * q.z),
+                2.0f * (q.y * q.z + q.w * q.x));
+}
+vec3 quaternion_z(vec4 q) {
+    return vec3(2.0f * (q.x * q.z + q.w * q.y), 2.0f * (q.y * q.z - q.w * q.x),
+                1.0f - 2.0f * (q.x * q.x + q.y * q.y));
+}
+float arctan_unit(float x) {
+    float s = x * x;
+    return x * (1.0f + s * (-0.3333314528f + s * (0.1999355085f + s * (-0.1420889944f +
+               s * (0.1065626393f + s * (-0.0752896400f + s * (0.0429096138f +
+               s * (-0.0161657367f + s * 0.0028662257f))))))));
+}
+float sin_quarter(float x) {
+    float s = x * x;
+    return x * (1.0f + s * (-0.1666666664f + s * (0.0083333315f + s * (-0.0001984090f +
+               s * (0.0000027526f + s * -0.0000000239f)))));
+}
+struct slerp_arc {
+    vec4 a;
+    vec4 b;
+    float angle;       // 0 ... pi/2
+    float inverse_sin; // 1 / sin(angle), 0 where the ends agree and a lerp is meant
+};
+slerp_arc slerp_begin(vec4 a, vec4 b) {
+    slerp_arc arc;
+    float cosine = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
+    float side = cosine < 0.0f ? -1.0f : 1.0f;
+    arc.a = a;
+    arc.b = b * side;
+    vec4 d = a - arc.b;
+    vec4 s = a + arc.b;
+    float d2 = d.x * d.x + d.y * d.y + d.z * d.z + d.w * d.w;
+    float s2 = s.x * s.x + s.y * s.y + s.z * s.z + s.w * s.w;
+    arc.angle = s2 > 0.0f ? 2.0f * arctan_unit(sqrt(d2 / s2)) : 0.0f;
+    arc.inverse_sin = arc.angle > 0.001f ? 1.0f / sin_quarter(arc.angle) : 0.0f;
+    return arc;
+}
+vec4 slerp_at(slerp_arc arc, float t) {
+    float wa = 1.0f - t;
+    float wb = t;
+    if (arc.inverse_sin > 0.0f) {
+        wa = t < 1.0f ? sin_quarter(wa * arc.angle) * arc.inverse_sin : 0.0f;
+        wb = t > 0.0f ? sin_quarter(wb * arc.angle) * arc.inverse_sin : 0.0f;
+        wa = t > 0.0f ? wa : 1.0f;
+        wb = t < 1.0f ? wb : 1.0f;
+    }
+    return arc.a * wa + arc.b * wb;
+}
+vec4 slerp(vec4 a, vec4 b, float t) {
+    vec4 q = slerp_at(slerp_begin(a, b), t);
+    return q * (1.0f / sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w));
+}
+vec4 quaternion_times(vec4 a, vec4 b) {
+    return vec4(a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+                a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+                a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
+                a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z);
+}
+vec3 quaternion_move(vec4 q, vec3 v) {
+    vec3 t = vec3(2.0f * (q.y * v.z - q.z * v.y), 2.0f * (q.z * v.x - q.x * v.z),
+                  2.0f * (q.x * v.y - q.y * v.x));
+    return vec3(q.w * t.x + (q.y * t.z - q.z * t.y), q.w * t.y + (q.z * t.x - q.x * t.z),
+                q.w * t.z + (q.x * t.y - q.y * t.x));
+}
+vec3 quaternion_rotate(vec4 q, vec3 v) { return v + quaternion_move(q, v); }
+vec3 posed_point(segment_pose p, vec3 x) {
+    return x + (p.shift + quaternion_move(p.rotation, x - p.base));
+}
+branch_end posed_end(branch_end rest, segment_pose moved, vec4 turned, vec4 other) {
+    branch_end now = rest;
+    now.position = posed_point(moved, rest.position);
+    vec4 turn = slerp(turned, other, 0.5f);
+    now.orientation = quaternion_times(turn, rest.orientation);
+    return now;
+}
+float dot3(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+vec3 cross3(vec3 a, vec3 b) {
+    return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+vec3 unit_or(vec3 v, vec3 otherwise) {
+    float l2 = dot3(v, v);
+    return l2 > 1e-30f ? v * (1.0f / sqrt(l2)) : otherwise;
+}
+vec3 double_reflection(vec3 p1, vec3 t1, vec3 r, vec3 p2, vec3 t2) {
+    vec3 v1 = p2 - p1;
+    float c1 = dot3(v1, v1);
+    vec3 r_mirrored = r;
+    vec3 t_mirrored = t1;
+    if (c1 > 1e-30f) {
+        r_mirrored = r - v1 * (2.0f / c1 * dot3(v1, r));
+        t_mirrored = t1 - v1 * (2.0f / c1 * dot3(v1, t1));
+    }
+    vec3 v2 = t2 - t_mirrored;
+    float c2 = dot3(v2, v2);
+    return c2 > 1e-30f ? r_mirrored - v2 * (2.0f / c2 * dot3(v2, r_mirrored)) : r_mirrored;
+}
+uint leaf_bits(uint seed, uint salt) {
+    uint h = seed + (salt + 1u) * 0x9e3779b9u;
+    h = (h ^ (h >> 16u)) * 0x7feb352du;
+    h = (h ^ (h >> 15u)) * 0x846ca68bu;
+    return h ^ (h >> 16u);
+}
+float leaf_rank(uint seed) { return float(leaf_bits(seed, 0u) >> 8u) * (1.0f / 16777216.0f); }
+float sine_of_phase(uint phase) {
+    uint within = phase & 0x7fffffffu;
+    uint quarter = within > 0x40000000u ? 0x80000000u - within : within;
+    float s = sin_quarter(float(quarter >> 7u) * 1.8725352e-7f);
+    return phase >= 0x80000000u ? -s : s;
+}
+float leaf_oscillation(uint seed, uint salt, uint time) {
+    uint bits = leaf_bits(seed, salt);
+    return sine_of_phase(time * (128u + (bits & 127u)) + bits);
+}
+struct leaf_at_rest {
+    vec3 position;
+    float width;
+    vec4 orientation;
+    float along; // m, the leaf's length
+    uint carrier;
+    uint seed;
+    float fold;
+};
+struct leaf_response {
+    uint time;
+    float flutter;
+    float flutter_speed; // m/s, above 0
+    float lean;
+    float lean_speed; // m/s, above 0
+};
+vec4 leaf_lean(leaf_response r, vec3 d, vec4 air) {
+    float k = r.lean * air.w / (air.w * air.w + r.lean_speed * r.lean_speed);
+    float x = k * (d.y * air.z - d.z * air.y);
+    float y = k * (d.z * air.x - d.x * air.z);
+    float z = k * (d.x * air.y - d.y * air.x);
+    float f = 1.0f / sqrt(1.0f + (x * x + y * y + z * z));
+    return vec4(x * f, y * f, z * f, f);
+}
+vec4 leaf_flutter(leaf_response r, uint seed, float speed) {
+    float k = r.flutter * (speed * speed / (speed * speed + r.flutter_speed * r.flutter_speed));
+    float y = k * (0.7f * leaf_oscillation(seed, 1u, r.time) +
+                   0.3f * leaf_oscillation(seed, 2u, r.time));
+    float x = k * (0.5f * leaf_oscillation(seed, 3u, r.time));
+    float f = 1.0f / sqrt(1.0f + (x * x + y * y));
+    return vec4(x * f, y * f, 0.0f, f);
+}
+struct leaf_detail {
+    float scale; // of its length and width; 0: it is dropped
+    float morph; // 0: octagon ... 1: the quadrilateral of the same area
+};
+leaf_detail leaf_detail_of(float seen, float full, float quad, uint seed) {
+    leaf_detail d;
+    d.scale = 1.0f;
+    d.morph = clamp(2.0f - seen / quad, 0.0f, 1.0f);
+    float part = seen / full;
+    float nu = max(2.0f * (part * part), 0.00048828125f);
+    if (nu < 2.0f) {
+        float rest = 1.0f - 0.5f * nu;
+        float mean = nu <= 1.0f ? 0.75f * nu : 1.0f - rest * rest / nu;
+        float area = clamp(2.0f * (nu - leaf_rank(seed)) / nu, 0.0f, 1.0f);
+        d.scale = sqrt(area / mean);
+    }
+    return d;
+}
+struct leaf_frame {
+    vec3 base;
+    vec3 middle;      // half the length along the midrib
+    vec3 right;       // half the width across, folded up
+    vec3 left;        // the same, towards -x
+    vec3 right_across;
+    vec3 left_across; // towards growing u as well
+    vec3 right_normal;
+    vec3 left_normal;
+    float axis;       // the corners on the axes and those between them, of a unit octagon
+    float diagonal;
+};
+vec4 leaf_turn(leaf_at_rest l, segment_pose pose, vec4 air, leaf_response response) {
+    vec4 q = quaternion_times(pose.rotation, l.orientation);
+    vec4 leaning = leaf_lean(response, quaternion_y(q), air);
+    return quaternion_times(quaternion_times(leaning, q),
+                            leaf_flutter(response, l.seed, air.w));
+}
+leaf_frame leaf_frame_of(leaf_at_rest l, vec3 base, vec4 turn, leaf_detail detail) {
+    leaf_frame f;
+    vec3 x = quaternion_x(turn);
+    vec3 y = quaternion_y(turn);
+    vec3 z = quaternion_z(turn);
+    float half_fold = 0.5f * clamp(l.fold, -1.5707964f, 1.5707964f);
+    float sine = half_fold < 0.0f ? -sin_quarter(-half_fold) : sin_quarter(half_fold);
+    float up = 2.0f * sine * sqrt(1.0f - sine * sine);
+    float level = 1.0f - 2.0f * (sine * sine);
+    float half_width = 0.5f * l.width * detail.scale;
+    float half_length = 0.5f * l.along * detail.scale;
+    f.base = base;
+    f.middle = y * half_length;
+    f.right_across = x * level + z * up;
+    f.left_across = x * level - z * up;
+    f.right_normal = z * level - x * up;
+    f.left_normal = z * level + x * up;
+    f.right = f.right_across * half_width;
+    f.left = f.left_across * -half_width;
+    f.axis = 1.0f + detail.morph * 0.18920712f;
+    f.diagonal = 0.70710678f / f.axis;
+    return f;
+}
+surface_vertex leaf_vertex(leaf_frame f, bool left, uint corner) {
+    surface_vertex s;
+    bool between = (corner & 1u) == 1u;
+    float across = between ? f.diagonal : (corner == 2u ? f.axis : 0.0f);
+    float along = corner == 2u ? 0.0f : (between ? f.diagonal : f.axis);
+    along = corner < 2u ? -along : along;
+    vec3 side = left ? f.left : f.right;
+    vec3 tangent = left ? f.left_across : f.right_across;
+    s.position = f.base + (side * across + f.middle * (1.0f + along));
+    s.u = left ? 0.5f - 0.5f * across : 0.5f + 0.5f * across;
+    s.normal = left ? f.left_normal : f.right_normal;
+    s.v = 0.5f + 0.5f * along;
+    s.tangent = vec4(tangent.x, tangent.y, tangent.z, 1.0f);
+    return s;
+}
+uint leaf_corner(uint j, bool left, bool quad) {
+    uint even = j == 0u ? 0u : (j == 2u ? 4u : 3u);
+    uint odd = j == 1u && !quad ? 1u : 2u;
+    uint corner = (j & 1u) == 1u ? odd : even;
+    return left ? 4u - corner : corner;
+}
+float leaf_linear(float c) { return c * (c * (c * 0.305306011f + 0.682171111f) + 0.012522878f); }
+float leaf_lit(float reflected, float through, float sunlight, float facing, float ambient_here,
+               float ambient_behind) {
+    return reflected * (ambient_here + sunlight * max(facing, 0.0f)) +
+           through * (ambient_behind + sunlight * max(-facing, 0.0f));
+}
+struct bark_surface {
+    vec3 albedo;
+    vec3 normal; // unit
+};
+float surfaces_dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+bark_surface bark_surface_of(vec4 texel, vec3 geometric, vec4 tangent, vec3 low, vec3 high,
+                             float strength) {
+    bark_surface s;
+    s.albedo = mix(low, high, texel.w);
+    vec3 along = vec3(tangent.x, tangent.y, tangent.z);
+    vec3 across = along - geometric * surfaces_dot(geometric, along);
+    vec3 t = across * (1.0f / sqrt(max(surfaces_dot(across, across), 1e-12f)));
+    vec3 b = vec3(geometric.y * t.z - geometric.z * t.y, geometric.z * t.x - geometric.x * t.z,
+                  geometric.x * t.y - geometric.y * t.x) * tangent.w;
+    float slope = strength * min(abs(tangent.w), 1.0f);
+    vec3 n = geometric * (texel.z * 2.0f - 1.0f) + t * ((texel.x * 2.0f - 1.0f) * slope) +
+             b * ((texel.y * 2.0f - 1.0f) * slope);
+    s.normal = n * (1.0f / sqrt(surfaces_dot(n, n)));
+    return s;
+}
+struct leaf_surface {
+    vec3 reflected; // of the light on the side that is seen
+    vec3 through;   // of the light on the other
+};
+leaf_surface leaf_surface_of(vec4 texel, float through) {
+    leaf_surface s;
+    s.reflected = vec3(leaf_linear(texel.x), leaf_linear(texel.y), leaf_linear(texel.z));
+    s.through = s.reflected * vec3(1.1f, 1.0f, 0.3f) * through;
+    return s;
+}
+vec3 leaf_surface_lit(leaf_surface s, vec3 sunlight, float facing, vec3 here, vec3 behind) {
+    return vec3(leaf_lit(s.reflected.x, s.through.x, sunlight.x, facing, here.x, behind.x),
+                leaf_lit(s.reflected.y, s.through.y, sunlight.y, facing, here.y, behind.y),
+                leaf_lit(s.reflected.z, s.through.z, sunlight.z, facing, here.z, behind.z));
+}
 struct scene_record {
     mat4 to_clip;
     mat4 from_clip;
@@ -330,20 +602,14 @@ vec4 kernel_vertex(uint index) {
 bool kernel_fragment(vec2 pixel, bool front) {
     vec3 position = varying_in[0].xyz;
     vec3 geometric = normalize(varying_in[1].xyz);
-    vec4 tangent = varying_in[2];
     vec4 texel = textureLod(kernel_images[1], vec2(varying_in[0].w * repeats_around,
                                                    varying_in[1].w * repeats_along), 0.0);
-    vec3 albedo = mix(low.xyz, high.xyz, texel.w);
-    vec3 across = tangent.xyz - geometric * dot(geometric, tangent.xyz);
-    vec3 t = across * (1.0 / sqrt(max(dot(across, across), 1e-12)));
-    vec3 b = cross(geometric, t) * tangent.w;
-    float slope = strength * min(abs(tangent.w), 1.0);
-    vec3 n = normalize(geometric * (texel.z * 2.0 - 1.0) + t * ((texel.x * 2.0 - 1.0) * slope) +
-                       b * ((texel.y * 2.0 - 1.0) * slope));
+    bark_surface surface =
+        bark_surface_of(texel, geometric, varying_in[2], low.xyz, high.xyz, strength);
     vec3 ambient = ambient_light(scene.ambient[0], scene.ambient[1], scene.ambient[2],
-                                 scene.ambient[3], n);
+                                 scene.ambient[3], surface.normal);
     float sun = dot(geometric, scene.sky.to_sun.xyz) > 0.0 ? sun_at(scene, position, geometric) : 0.0;
-    color_out = vec4(lit(albedo, n, scene.sky, sun, ambient), 1.0);
+    color_out = vec4(lit(surface.albedo, surface.normal, scene.sky, sun, ambient), 1.0);
     return true;
 }
 #endif
@@ -622,6 +888,278 @@ float srgb_encode(float x) {
 float display(float x) {
     return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
 }
+vec3 quaternion_x(vec4 q) {
+    return vec3(1.0f - 2.0f * (q.y * q.y + q.z * q.z), 2.0f * (q.x * q.y + q.w * q.z),
+                2.0f * (q.x * q.z - q.w * q.y));
+}
+vec3 quaternion_y(vec4 q) {
+    return vec3(2.0f * (q.x * q.y - q.w * q.z), 1.0f - 2.0f * (q.x * q.x + q.z * q.z),
+                2.0f * (q.y * q.z + q.w * q.x));
+}
+vec3 quaternion_z(vec4 q) {
+    return vec3(2.0f * (q.x * q.z + q.w * q.y), 2.0f * (q.y * q.z - q.w * q.x),
+                1.0f - 2.0f * (q.x * q.x + q.y * q.y));
+}
+float arctan_unit(float x) {
+    float s = x * x;
+    return x * (1.0f + s * (-0.3333314528f + s * (0.1999355085f + s * (-0.1420889944f +
+               s * (0.1065626393f + s * (-0.0752896400f + s * (0.0429096138f +
+               s * (-0.0161657367f + s * 0.0028662257f))))))));
+}
+float sin_quarter(float x) {
+    float s = x * x;
+    return x * (1.0f + s * (-0.1666666664f + s * (0.0083333315f + s * (-0.0001984090f +
+               s * (0.0000027526f + s * -0.0000000239f)))));
+}
+struct slerp_arc {
+    vec4 a;
+    vec4 b;
+    float angle;       // 0 ... pi/2
+    float inverse_sin; // 1 / sin(angle), 0 where the ends agree and a lerp is meant
+};
+slerp_arc slerp_begin(vec4 a, vec4 b) {
+    slerp_arc arc;
+    float cosine = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
+    float side = cosine < 0.0f ? -1.0f : 1.0f;
+    arc.a = a;
+    arc.b = b * side;
+    vec4 d = a - arc.b;
+    vec4 s = a + arc.b;
+    float d2 = d.x * d.x + d.y * d.y + d.z * d.z + d.w * d.w;
+    float s2 = s.x * s.x + s.y * s.y + s.z * s.z + s.w * s.w;
+    arc.angle = s2 > 0.0f ? 2.0f * arctan_unit(sqrt(d2 / s2)) : 0.0f;
+    arc.inverse_sin = arc.angle > 0.001f ? 1.0f / sin_quarter(arc.angle) : 0.0f;
+    return arc;
+}
+vec4 slerp_at(slerp_arc arc, float t) {
+    float wa = 1.0f - t;
+    float wb = t;
+    if (arc.inverse_sin > 0.0f) {
+        wa = t < 1.0f ? sin_quarter(wa * arc.angle) * arc.inverse_sin : 0.0f;
+        wb = t > 0.0f ? sin_quarter(wb * arc.angle) * arc.inverse_sin : 0.0f;
+        wa = t > 0.0f ? wa : 1.0f;
+        wb = t < 1.0f ? wb : 1.0f;
+    }
+    return arc.a * wa + arc.b * wb;
+}
+vec4 slerp(vec4 a, vec4 b, float t) {
+    vec4 q = slerp_at(slerp_begin(a, b), t);
+    return q * (1.0f / sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w));
+}
+vec4 quaternion_times(vec4 a, vec4 b) {
+    return vec4(a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+                a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+                a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
+                a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z);
+}
+vec3 quaternion_move(vec4 q, vec3 v) {
+    vec3 t = vec3(2.0f * (q.y * v.z - q.z * v.y), 2.0f * (q.z * v.x - q.x * v.z),
+                  2.0f * (q.x * v.y - q.y * v.x));
+    return vec3(q.w * t.x + (q.y * t.z - q.z * t.y), q.w * t.y + (q.z * t.x - q.x * t.z),
+                q.w * t.z + (q.x * t.y - q.y * t.x));
+}
+vec3 quaternion_rotate(vec4 q, vec3 v) { return v + quaternion_move(q, v); }
+vec3 posed_point(segment_pose p, vec3 x) {
+    return x + (p.shift + quaternion_move(p.rotation, x - p.base));
+}
+branch_end posed_end(branch_end rest, segment_pose moved, vec4 turned, vec4 other) {
+    branch_end now = rest;
+    now.position = posed_point(moved, rest.position);
+    vec4 turn = slerp(turned, other, 0.5f);
+    now.orientation = quaternion_times(turn, rest.orientation);
+    return now;
+}
+float dot3(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+vec3 cross3(vec3 a, vec3 b) {
+    return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+vec3 unit_or(vec3 v, vec3 otherwise) {
+    float l2 = dot3(v, v);
+    return l2 > 1e-30f ? v * (1.0f / sqrt(l2)) : otherwise;
+}
+vec3 double_reflection(vec3 p1, vec3 t1, vec3 r, vec3 p2, vec3 t2) {
+    vec3 v1 = p2 - p1;
+    float c1 = dot3(v1, v1);
+    vec3 r_mirrored = r;
+    vec3 t_mirrored = t1;
+    if (c1 > 1e-30f) {
+        r_mirrored = r - v1 * (2.0f / c1 * dot3(v1, r));
+        t_mirrored = t1 - v1 * (2.0f / c1 * dot3(v1, t1));
+    }
+    vec3 v2 = t2 - t_mirrored;
+    float c2 = dot3(v2, v2);
+    return c2 > 1e-30f ? r_mirrored - v2 * (2.0f / c2 * dot3(v2, r_mirrored)) : r_mirrored;
+}
+uint leaf_bits(uint seed, uint salt) {
+    uint h = seed + (salt + 1u) * 0x9e3779b9u;
+    h = (h ^ (h >> 16u)) * 0x7feb352du;
+    h = (h ^ (h >> 15u)) * 0x846ca68bu;
+    return h ^ (h >> 16u);
+}
+float leaf_rank(uint seed) { return float(leaf_bits(seed, 0u) >> 8u) * (1.0f / 16777216.0f); }
+float sine_of_phase(uint phase) {
+    uint within = phase & 0x7fffffffu;
+    uint quarter = within > 0x40000000u ? 0x80000000u - within : within;
+    float s = sin_quarter(float(quarter >> 7u) * 1.8725352e-7f);
+    return phase >= 0x80000000u ? -s : s;
+}
+float leaf_oscillation(uint seed, uint salt, uint time) {
+    uint bits = leaf_bits(seed, salt);
+    return sine_of_phase(time * (128u + (bits & 127u)) + bits);
+}
+struct leaf_at_rest {
+    vec3 position;
+    float width;
+    vec4 orientation;
+    float along; // m, the leaf's length
+    uint carrier;
+    uint seed;
+    float fold;
+};
+struct leaf_response {
+    uint time;
+    float flutter;
+    float flutter_speed; // m/s, above 0
+    float lean;
+    float lean_speed; // m/s, above 0
+};
+vec4 leaf_lean(leaf_response r, vec3 d, vec4 air) {
+    float k = r.lean * air.w / (air.w * air.w + r.lean_speed * r.lean_speed);
+    float x = k * (d.y * air.z - d.z * air.y);
+    float y = k * (d.z * air.x - d.x * air.z);
+    float z = k * (d.x * air.y - d.y * air.x);
+    float f = 1.0f / sqrt(1.0f + (x * x + y * y + z * z));
+    return vec4(x * f, y * f, z * f, f);
+}
+vec4 leaf_flutter(leaf_response r, uint seed, float speed) {
+    float k = r.flutter * (speed * speed / (speed * speed + r.flutter_speed * r.flutter_speed));
+    float y = k * (0.7f * leaf_oscillation(seed, 1u, r.time) +
+                   0.3f * leaf_oscillation(seed, 2u, r.time));
+    float x = k * (0.5f * leaf_oscillation(seed, 3u, r.time));
+    float f = 1.0f / sqrt(1.0f + (x * x + y * y));
+    return vec4(x * f, y * f, 0.0f, f);
+}
+struct leaf_detail {
+    float scale; // of its length and width; 0: it is dropped
+    float morph; // 0: octagon ... 1: the quadrilateral of the same area
+};
+leaf_detail leaf_detail_of(float seen, float full, float quad, uint seed) {
+    leaf_detail d;
+    d.scale = 1.0f;
+    d.morph = clamp(2.0f - seen / quad, 0.0f, 1.0f);
+    float part = seen / full;
+    float nu = max(2.0f * (part * part), 0.00048828125f);
+    if (nu < 2.0f) {
+        float rest = 1.0f - 0.5f * nu;
+        float mean = nu <= 1.0f ? 0.75f * nu : 1.0f - rest * rest / nu;
+        float area = clamp(2.0f * (nu - leaf_rank(seed)) / nu, 0.0f, 1.0f);
+        d.scale = sqrt(area / mean);
+    }
+    return d;
+}
+struct leaf_frame {
+    vec3 base;
+    vec3 middle;      // half the length along the midrib
+    vec3 right;       // half the width across, folded up
+    vec3 left;        // the same, towards -x
+    vec3 right_across;
+    vec3 left_across; // towards growing u as well
+    vec3 right_normal;
+    vec3 left_normal;
+    float axis;       // the corners on the axes and those between them, of a unit octagon
+    float diagonal;
+};
+vec4 leaf_turn(leaf_at_rest l, segment_pose pose, vec4 air, leaf_response response) {
+    vec4 q = quaternion_times(pose.rotation, l.orientation);
+    vec4 leaning = leaf_lean(response, quaternion_y(q), air);
+    return quaternion_times(quaternion_times(leaning, q),
+                            leaf_flutter(response, l.seed, air.w));
+}
+leaf_frame leaf_frame_of(leaf_at_rest l, vec3 base, vec4 turn, leaf_detail detail) {
+    leaf_frame f;
+    vec3 x = quaternion_x(turn);
+    vec3 y = quaternion_y(turn);
+    vec3 z = quaternion_z(turn);
+    float half_fold = 0.5f * clamp(l.fold, -1.5707964f, 1.5707964f);
+    float sine = half_fold < 0.0f ? -sin_quarter(-half_fold) : sin_quarter(half_fold);
+    float up = 2.0f * sine * sqrt(1.0f - sine * sine);
+    float level = 1.0f - 2.0f * (sine * sine);
+    float half_width = 0.5f * l.width * detail.scale;
+    float half_length = 0.5f * l.along * detail.scale;
+    f.base = base;
+    f.middle = y * half_length;
+    f.right_across = x * level + z * up;
+    f.left_across = x * level - z * up;
+    f.right_normal = z * level - x * up;
+    f.left_normal = z * level + x * up;
+    f.right = f.right_across * half_width;
+    f.left = f.left_across * -half_width;
+    f.axis = 1.0f + detail.morph * 0.18920712f;
+    f.diagonal = 0.70710678f / f.axis;
+    return f;
+}
+surface_vertex leaf_vertex(leaf_frame f, bool left, uint corner) {
+    surface_vertex s;
+    bool between = (corner & 1u) == 1u;
+    float across = between ? f.diagonal : (corner == 2u ? f.axis : 0.0f);
+    float along = corner == 2u ? 0.0f : (between ? f.diagonal : f.axis);
+    along = corner < 2u ? -along : along;
+    vec3 side = left ? f.left : f.right;
+    vec3 tangent = left ? f.left_across : f.right_across;
+    s.position = f.base + (side * across + f.middle * (1.0f + along));
+    s.u = left ? 0.5f - 0.5f * across : 0.5f + 0.5f * across;
+    s.normal = left ? f.left_normal : f.right_normal;
+    s.v = 0.5f + 0.5f * along;
+    s.tangent = vec4(tangent.x, tangent.y, tangent.z, 1.0f);
+    return s;
+}
+uint leaf_corner(uint j, bool left, bool quad) {
+    uint even = j == 0u ? 0u : (j == 2u ? 4u : 3u);
+    uint odd = j == 1u && !quad ? 1u : 2u;
+    uint corner = (j & 1u) == 1u ? odd : even;
+    return left ? 4u - corner : corner;
+}
+float leaf_linear(float c) { return c * (c * (c * 0.305306011f + 0.682171111f) + 0.012522878f); }
+float leaf_lit(float reflected, float through, float sunlight, float facing, float ambient_here,
+               float ambient_behind) {
+    return reflected * (ambient_here + sunlight * max(facing, 0.0f)) +
+           through * (ambient_behind + sunlight * max(-facing, 0.0f));
+}
+struct bark_surface {
+    vec3 albedo;
+    vec3 normal; // unit
+};
+float surfaces_dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+bark_surface bark_surface_of(vec4 texel, vec3 geometric, vec4 tangent, vec3 low, vec3 high,
+                             float strength) {
+    bark_surface s;
+    s.albedo = mix(low, high, texel.w);
+    vec3 along = vec3(tangent.x, tangent.y, tangent.z);
+    vec3 across = along - geometric * surfaces_dot(geometric, along);
+    vec3 t = across * (1.0f / sqrt(max(surfaces_dot(across, across), 1e-12f)));
+    vec3 b = vec3(geometric.y * t.z - geometric.z * t.y, geometric.z * t.x - geometric.x * t.z,
+                  geometric.x * t.y - geometric.y * t.x) * tangent.w;
+    float slope = strength * min(abs(tangent.w), 1.0f);
+    vec3 n = geometric * (texel.z * 2.0f - 1.0f) + t * ((texel.x * 2.0f - 1.0f) * slope) +
+             b * ((texel.y * 2.0f - 1.0f) * slope);
+    s.normal = n * (1.0f / sqrt(surfaces_dot(n, n)));
+    return s;
+}
+struct leaf_surface {
+    vec3 reflected; // of the light on the side that is seen
+    vec3 through;   // of the light on the other
+};
+leaf_surface leaf_surface_of(vec4 texel, float through) {
+    leaf_surface s;
+    s.reflected = vec3(leaf_linear(texel.x), leaf_linear(texel.y), leaf_linear(texel.z));
+    s.through = s.reflected * vec3(1.1f, 1.0f, 0.3f) * through;
+    return s;
+}
+vec3 leaf_surface_lit(leaf_surface s, vec3 sunlight, float facing, vec3 here, vec3 behind) {
+    return vec3(leaf_lit(s.reflected.x, s.through.x, sunlight.x, facing, here.x, behind.x),
+                leaf_lit(s.reflected.y, s.through.y, sunlight.y, facing, here.y, behind.y),
+                leaf_lit(s.reflected.z, s.through.z, sunlight.z, facing, here.z, behind.z));
+}
 struct scene_record {
     mat4 to_clip;
     mat4 from_clip;
@@ -669,20 +1207,14 @@ vec4 kernel_vertex(uint index) {
 bool kernel_fragment(vec2 pixel, bool front) {
     vec3 position = varying_in[0].xyz;
     vec3 geometric = normalize(varying_in[1].xyz);
-    vec4 tangent = varying_in[2];
     vec4 texel = textureLod(kernel_images[1], vec2(varying_in[0].w * repeats_around,
                                                    varying_in[1].w * repeats_along), 0.0);
-    vec3 albedo = mix(low.xyz, high.xyz, texel.w);
-    vec3 across = tangent.xyz - geometric * dot(geometric, tangent.xyz);
-    vec3 t = across * (1.0 / sqrt(max(dot(across, across), 1e-12)));
-    vec3 b = cross(geometric, t) * tangent.w;
-    float slope = strength * min(abs(tangent.w), 1.0);
-    vec3 n = normalize(geometric * (texel.z * 2.0 - 1.0) + t * ((texel.x * 2.0 - 1.0) * slope) +
-                       b * ((texel.y * 2.0 - 1.0) * slope));
+    bark_surface surface =
+        bark_surface_of(texel, geometric, varying_in[2], low.xyz, high.xyz, strength);
     vec3 ambient = ambient_light(scene.ambient[0], scene.ambient[1], scene.ambient[2],
-                                 scene.ambient[3], n);
+                                 scene.ambient[3], surface.normal);
     float sun = dot(geometric, scene.sky.to_sun.xyz) > 0.0 ? sun_at(scene, position, geometric) : 0.0;
-    color_out = vec4(lit(albedo, n, scene.sky, sun, ambient), 1.0);
+    color_out = vec4(lit(surface.albedo, surface.normal, scene.sky, sun, ambient), 1.0);
     return true;
 }
 #endif

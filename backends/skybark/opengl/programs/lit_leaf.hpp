@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 56dba62bc6fc8ed4ecc3b8871dbcb7c8318e5564e2262630730abeff7ac365c9
+// sha256 de03d31028afa5dc30614351cd652d295aeda93cb8a11aa9ce316c085b1554e0
 #pragma once
 
 #include <skybark/kernels/lit_leaf.hpp>
@@ -519,6 +519,41 @@ float leaf_lit(float reflected, float through, float sunlight, float facing, flo
     return reflected * (ambient_here + sunlight * max(facing, 0.0f)) +
            through * (ambient_behind + sunlight * max(-facing, 0.0f));
 }
+struct bark_surface {
+    vec3 albedo;
+    vec3 normal; // unit
+};
+float surfaces_dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+bark_surface bark_surface_of(vec4 texel, vec3 geometric, vec4 tangent, vec3 low, vec3 high,
+                             float strength) {
+    bark_surface s;
+    s.albedo = mix(low, high, texel.w);
+    vec3 along = vec3(tangent.x, tangent.y, tangent.z);
+    vec3 across = along - geometric * surfaces_dot(geometric, along);
+    vec3 t = across * (1.0f / sqrt(max(surfaces_dot(across, across), 1e-12f)));
+    vec3 b = vec3(geometric.y * t.z - geometric.z * t.y, geometric.z * t.x - geometric.x * t.z,
+                  geometric.x * t.y - geometric.y * t.x) * tangent.w;
+    float slope = strength * min(abs(tangent.w), 1.0f);
+    vec3 n = geometric * (texel.z * 2.0f - 1.0f) + t * ((texel.x * 2.0f - 1.0f) * slope) +
+             b * ((texel.y * 2.0f - 1.0f) * slope);
+    s.normal = n * (1.0f / sqrt(surfaces_dot(n, n)));
+    return s;
+}
+struct leaf_surface {
+    vec3 reflected; // of the light on the side that is seen
+    vec3 through;   // of the light on the other
+};
+leaf_surface leaf_surface_of(vec4 texel, float through) {
+    leaf_surface s;
+    s.reflected = vec3(leaf_linear(texel.x), leaf_linear(texel.y), leaf_linear(texel.z));
+    s.through = s.reflected * vec3(1.1f, 1.0f, 0.3f) * through;
+    return s;
+}
+vec3 leaf_surface_lit(leaf_surface s, vec3 sunlight, float facing, vec3 here, vec3 behind) {
+    return vec3(leaf_lit(s.reflected.x, s.through.x, sunlight.x, facing, here.x, behind.x),
+                leaf_lit(s.reflected.y, s.through.y, sunlight.y, facing, here.y, behind.y),
+                leaf_lit(s.reflected.z, s.through.z, sunlight.z, facing, here.z, behind.z));
+}
 struct scene_record {
     mat4 to_clip;
     mat4 from_clip;
@@ -577,12 +612,9 @@ bool kernel_fragment(vec2 pixel, bool front) {
     float sun = sun_at(scene, position, facing > 0.0 ? n : -n);
     vec3 here = ambient_of(n) * sky;
     vec3 behind = ambient_of(-n) * sky;
-    vec3 albedo = vec3(leaf_linear(texel.x), leaf_linear(texel.y), leaf_linear(texel.z));
-    vec3 passed = albedo * vec3(1.1, 1.0, 0.3) * through;
     vec3 light = scene.sky.sunlight.xyz * sun;
-    color_out = vec4(leaf_lit(albedo.x, passed.x, light.x, facing, here.x, behind.x),
-                     leaf_lit(albedo.y, passed.y, light.y, facing, here.y, behind.y),
-                     leaf_lit(albedo.z, passed.z, light.z, facing, here.z, behind.z), 1.0);
+    color_out = vec4(leaf_surface_lit(leaf_surface_of(texel, through), light, facing, here, behind),
+                     1.0);
     return true;
 }
 #endif
@@ -1097,6 +1129,41 @@ float leaf_lit(float reflected, float through, float sunlight, float facing, flo
     return reflected * (ambient_here + sunlight * max(facing, 0.0f)) +
            through * (ambient_behind + sunlight * max(-facing, 0.0f));
 }
+struct bark_surface {
+    vec3 albedo;
+    vec3 normal; // unit
+};
+float surfaces_dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+bark_surface bark_surface_of(vec4 texel, vec3 geometric, vec4 tangent, vec3 low, vec3 high,
+                             float strength) {
+    bark_surface s;
+    s.albedo = mix(low, high, texel.w);
+    vec3 along = vec3(tangent.x, tangent.y, tangent.z);
+    vec3 across = along - geometric * surfaces_dot(geometric, along);
+    vec3 t = across * (1.0f / sqrt(max(surfaces_dot(across, across), 1e-12f)));
+    vec3 b = vec3(geometric.y * t.z - geometric.z * t.y, geometric.z * t.x - geometric.x * t.z,
+                  geometric.x * t.y - geometric.y * t.x) * tangent.w;
+    float slope = strength * min(abs(tangent.w), 1.0f);
+    vec3 n = geometric * (texel.z * 2.0f - 1.0f) + t * ((texel.x * 2.0f - 1.0f) * slope) +
+             b * ((texel.y * 2.0f - 1.0f) * slope);
+    s.normal = n * (1.0f / sqrt(surfaces_dot(n, n)));
+    return s;
+}
+struct leaf_surface {
+    vec3 reflected; // of the light on the side that is seen
+    vec3 through;   // of the light on the other
+};
+leaf_surface leaf_surface_of(vec4 texel, float through) {
+    leaf_surface s;
+    s.reflected = vec3(leaf_linear(texel.x), leaf_linear(texel.y), leaf_linear(texel.z));
+    s.through = s.reflected * vec3(1.1f, 1.0f, 0.3f) * through;
+    return s;
+}
+vec3 leaf_surface_lit(leaf_surface s, vec3 sunlight, float facing, vec3 here, vec3 behind) {
+    return vec3(leaf_lit(s.reflected.x, s.through.x, sunlight.x, facing, here.x, behind.x),
+                leaf_lit(s.reflected.y, s.through.y, sunlight.y, facing, here.y, behind.y),
+                leaf_lit(s.reflected.z, s.through.z, sunlight.z, facing, here.z, behind.z));
+}
 struct scene_record {
     mat4 to_clip;
     mat4 from_clip;
@@ -1155,12 +1222,9 @@ bool kernel_fragment(vec2 pixel, bool front) {
     float sun = sun_at(scene, position, facing > 0.0 ? n : -n);
     vec3 here = ambient_of(n) * sky;
     vec3 behind = ambient_of(-n) * sky;
-    vec3 albedo = vec3(leaf_linear(texel.x), leaf_linear(texel.y), leaf_linear(texel.z));
-    vec3 passed = albedo * vec3(1.1, 1.0, 0.3) * through;
     vec3 light = scene.sky.sunlight.xyz * sun;
-    color_out = vec4(leaf_lit(albedo.x, passed.x, light.x, facing, here.x, behind.x),
-                     leaf_lit(albedo.y, passed.y, light.y, facing, here.y, behind.y),
-                     leaf_lit(albedo.z, passed.z, light.z, facing, here.z, behind.z), 1.0);
+    color_out = vec4(leaf_surface_lit(leaf_surface_of(texel, through), light, facing, here, behind),
+                     1.0);
     return true;
 }
 #endif

@@ -1,0 +1,42 @@
+// Device side of skybark::kernels::meadow_leaf.
+#define KERNEL_VARYINGS 2
+#define KERNEL_IMAGES 2
+#define KERNEL_VOLUMES 2
+#define KERNEL_PARAMETERS float through;
+#include "../skeletons/parameters.glsl"
+#include "../shared/meadow_light.glsl"
+#include "../shared/surfaces.glsl"
+#include "scene.glsl.inc"
+layout(std430, binding = 0) readonly buffer vertices_buffer { vec4 vertices[]; };
+layout(std430, binding = 1) readonly buffer scene_buffer { scene_record scene; };
+layout(std430, binding = 2) readonly buffer around_buffer { surroundings_record around; };
+#include "meadow_scene.glsl.inc"
+
+#ifdef SKYBARK_VERTEX_STAGE
+vec4 kernel_vertex(uint index) {
+    varying_out[0] = vertices[3u * index];
+    varying_out[1] = vertices[3u * index + 1u];
+    return scene.to_clip * vec4(varying_out[0].xyz, 1.0);
+}
+#endif
+#ifdef SKYBARK_FRAGMENT_STAGE
+bool kernel_fragment(vec2 pixel, bool front) {
+    vec4 texel = textureLod(kernel_images[1], vec2(varying_in[0].w, varying_in[1].w), 0.0);
+    if (texel.w < 0.5) {
+        return false;
+    }
+    vec3 position = varying_in[0].xyz;
+    vec3 upper = normalize(varying_in[1].xyz);
+    vec3 n = front ? upper : -upper;
+    float facing = dot(n, scene.sky.to_sun.xyz);
+    float sun = sun_at(scene, position, facing > 0.0 ? n : -n) * sun_behind_clouds(position);
+    gathered_around gathered = gathered_at(position);
+    const float over_pi = 0.318309886;
+    vec3 light = leaf_surface_lit(leaf_surface_of(texel, through), scene.sky.sunlight.xyz * sun,
+                                  facing, gathered_irradiance(gathered, n) * over_pi,
+                                  gathered_irradiance(gathered, -n) * over_pi);
+    vec3 away = position - scene.camera.xyz;
+    color_out = vec4(meadow_through_air(around, scene.sky, light, away), 1.0);
+    return true;
+}
+#endif
