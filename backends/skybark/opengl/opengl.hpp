@@ -24,6 +24,8 @@
 #include <skybark/opengl/programs/cast_leaf_shadow.hpp>
 #include <skybark/opengl/programs/cast_shadow.hpp>
 #include <skybark/opengl/programs/clear_sky.hpp>
+#include <skybark/opengl/programs/cloud_drift.hpp>
+#include <skybark/opengl/programs/cloud_layer.hpp>
 #include <skybark/opengl/programs/clouded_ground.hpp>
 #include <skybark/opengl/programs/detailed_branch.hpp>
 #include <skybark/opengl/programs/develop.hpp>

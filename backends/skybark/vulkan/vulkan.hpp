@@ -21,6 +21,8 @@
 #include <skybark/vulkan/programs/cast_leaf_shadow.hpp>
 #include <skybark/vulkan/programs/cast_shadow.hpp>
 #include <skybark/vulkan/programs/clear_sky.hpp>
+#include <skybark/vulkan/programs/cloud_drift.hpp>
+#include <skybark/vulkan/programs/cloud_layer.hpp>
 #include <skybark/vulkan/programs/clouded_ground.hpp>
 #include <skybark/vulkan/programs/detailed_branch.hpp>
 #include <skybark/vulkan/programs/develop.hpp>
