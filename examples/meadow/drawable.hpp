@@ -33,6 +33,7 @@ template <backend B>
 struct drawable {
     buffer_view<B> vertices; ///< surface_vertex
     draw_geometry<B> geometry;
+    look as = look::bark;       ///< as its material has it
     std::uint32_t material = 0; ///< its number in the list that the painter was given
     bool casts = true;          ///< a shadow, in the sun
 };

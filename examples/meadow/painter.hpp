@@ -159,7 +159,7 @@ class painter {
         draw_target<B> picture{&images_[0], &images_[1], glm::vec4(0), 1.0f};
         for (const look each : {look::bark, look::leaf}) {
             for (const drawable<B>& one : stand) {
-                if (materials_[one.material].as == each) {
+                if (one.as == each) {
                     draw_surface(to, one, light, picture);
                     picture = so_far();
                 }
@@ -196,7 +196,6 @@ class painter {
   private:
     /// A material's numbers; its image has the same place in `pictures_`.
     struct surface {
-        look as;
         kernels::meadow_bark bark;
         kernels::meadow_leaf leaf;
     };
@@ -259,9 +258,8 @@ class painter {
         return {&images_[2], filter_mode::nearest, wrap_mode::clamp};
     }
     [[nodiscard]] sampled_image<B> picture_of(const drawable<B>& one) const {
-        const bool bark = materials_[one.material].as == look::bark;
         return {&pictures_[one.material], filter_mode::linear,
-                bark ? wrap_mode::repeat : wrap_mode::clamp};
+                one.as == look::bark ? wrap_mode::repeat : wrap_mode::clamp};
     }
 
     void cast_shadows(typename B::recorder& to, std::span<const drawable<B>> stand) const {
@@ -275,7 +273,7 @@ class painter {
             if (!one.casts) {
                 continue;
             }
-            if (materials_[one.material].as == look::leaf) {
+            if (one.as == look::leaf) {
                 to.draw(kernels::cast_leaf_shadow{}, {one.vertices, scene}, {picture_of(one)},
                         one.geometry, from_sun, draw_state{});
             } else {
@@ -292,7 +290,7 @@ class painter {
         const buffer_view<B> scene = view<B>(buffers_[scene_buffer]);
         const buffer_view<B> around = view<B>(buffers_[around_buffer]);
         const auto* clouds = light.clouds != nullptr ? light.clouds : light.gathered;
-        if (its.as == look::leaf) {
+        if (one.as == look::leaf) {
             volume_bindings<B, kernels::meadow_leaf> volumes;
             volumes.read = {clouds, light.gathered};
             to.draw(its.leaf, {one.vertices, scene, around}, {shadow_map(), picture_of(one)},
