@@ -7,13 +7,13 @@
 // kernel's own.
 
 #include <skybark/vulkan/image.hpp>
+#include <skybark/vulkan/program.hpp>
 #include <skybark/vulkan/volume.hpp>
 
 #include <array>
 #include <compare>
 #include <map>
 #include <memory>
-#include <span>
 #include <tuple>
 #include <vector>
 
@@ -42,9 +42,6 @@ inline constexpr std::uint32_t push_bytes = 16 + max_kernel_bytes;
 
 inline constexpr VkShaderStageFlags draw_stages =
     VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-
-/// A program's SPIR-V. Its address tells programs apart.
-using spirv_words = std::span<const std::uint32_t>;
 
 /// What layouts differ by.
 struct layout_shape {
@@ -173,8 +170,7 @@ class pipeline_cache {
     }
 
   private:
-    using draw_key =
-        std::tuple<const std::uint32_t*, VkFormat, VkFormat, bool, bool, blend_mode, cull_mode>;
+    using draw_key = std::tuple<const void*, VkFormat, VkFormat, bool, bool, blend_mode, cull_mode>;
 
     void release(const program_layout& l) {
         const context& c = *context_;
@@ -225,7 +221,7 @@ class pipeline_cache {
         context& c = *context_;
         auto info = make<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
         info.codeSize = words.size_bytes();
-        info.pCode = words.data();
+        info.pCode = static_cast<const std::uint32_t*>(words.data());
         VkShaderModule module = VK_NULL_HANDLE;
         if (auto done =
                 rejected(c.call.create_shader_module(c.device(), &info, c.callbacks(), &module));
@@ -386,7 +382,7 @@ class pipeline_cache {
     }
 
     context* context_;
-    std::map<const std::uint32_t*, VkPipeline> compute_;
+    std::map<const void*, VkPipeline> compute_;
     std::map<draw_key, VkPipeline> draw_;
     std::map<layout_shape, std::unique_ptr<program_layout>> layouts_;
     std::array<VkSampler, 4> samplers_{};

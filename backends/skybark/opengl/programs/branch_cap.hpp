@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 e256232d0fe04f673c85204d0a2027586c7ee8dc385690d98814d41e3d9e8f04
+// sha256 75f8ca35e376391a6b1c894ff12430c26d711758a45f159ae6e9022a0f5fffd8
 #pragma once
 
 #include <skybark/kernels/branch_cap.hpp>
@@ -10,12 +10,12 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::branch_cap> {
-    static constexpr std::string_view expand_vert = R"glsl(#version 450
+    static constexpr std::string_view expand_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 layout(location = 0) flat out uint skybark_point;
 void main() { skybark_point = uint(gl_VertexID); }
-)glsl";
-    static constexpr std::string_view rings_geom = R"glsl(#version 450
+)glsl", 137};
+    static constexpr std::string_view rings_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_EXPAND
 #define KERNEL_PARAMETERS uint sides;
@@ -35,15 +35,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -66,331 +66,331 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct surface_vertex {
-    vec3 position;
-    float u;
-    vec3 normal;
-    float v;
-    vec4 tangent;
+vec3 position;
+float u;
+vec3 normal;
+float v;
+vec4 tangent;
 };
 struct branch_end {
-    vec3 position;
-    float radius;
-    vec4 orientation;
-    float path;
-    float slope;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+vec4 orientation;
+float path;
+float slope;
+float reserved0;
+float reserved1;
 };
 struct branch_segment {
-    uint start;
-    uint end;
-    uint caps;
-    uint reserved;
+uint start;
+uint end;
+uint caps;
+uint reserved;
 };
 struct segment_pose {
-    vec4 rotation;
-    vec3 base;
-    float reserved0;
-    vec3 shift;
-    float reserved1;
+vec4 rotation;
+vec3 base;
+float reserved0;
+vec3 shift;
+float reserved1;
 };
 struct end_carrier {
-    uint moved_by;
-    uint turned_by;
-    uint and_by;
-    uint reserved;
+uint moved_by;
+uint turned_by;
+uint and_by;
+uint reserved;
 };
 struct leaf {
-    vec3 position;
-    float width;
-    vec4 orientation;
-    float length;
-    uint carrier;
-    uint seed;
-    float fold;
+vec3 position;
+float width;
+vec4 orientation;
+float length;
+uint carrier;
+uint seed;
+float fold;
 };
 struct segment_load {
-    vec3 force;
-    float drag;
+vec3 force;
+float drag;
 };
 struct cloud_particle {
-    vec3 position;
-    float radius;
-    float optical_depth;
-    float albedo;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+float optical_depth;
+float albedo;
+float reserved0;
+float reserved1;
 };
 struct light_grid {
-    vec4 anchor;
-    vec4 row_x;
-    vec4 row_y;
-    vec4 row_z;
-    vec4 voxel;
+vec4 anchor;
+vec4 row_x;
+vec4 row_y;
+vec4 row_z;
+vec4 voxel;
 };
 struct gather_triangle {
-    vec3 a;
-    uint material;
-    vec3 b;
-    uint alpha;
-    vec3 c;
-    uint reserved;
+vec3 a;
+uint material;
+vec3 b;
+uint alpha;
+vec3 c;
+uint reserved;
 };
 struct gather_material {
-    vec3 diffuse;
-    uint two_sided;
-    vec3 emission;
-    float reserved0;
-    vec3 transmission;
-    float reserved1;
+vec3 diffuse;
+uint two_sided;
+vec3 emission;
+float reserved0;
+vec3 transmission;
+float reserved1;
 };
 struct gather_sample {
-    vec3 position;
-    float reserved0;
-    vec3 normal;
-    float reserved1;
+vec3 position;
+float reserved0;
+vec3 normal;
+float reserved1;
 };
 struct gather_hit {
-    float distance;
-    uint surface;
-    float u;
-    float v;
+float distance;
+uint surface;
+float u;
+float v;
 };
 struct ray_bundle {
-    vec4 centre;
-    vec4 right;
-    vec4 up;
-    vec4 direction;
+vec4 centre;
+vec4 right;
+vec4 up;
+vec4 direction;
 };
 struct patch_table {
-    uint front;
-    uint back;
-    uint rows;
-    uint reserved;
+uint front;
+uint back;
+uint rows;
+uint reserved;
 };
 vec3 quaternion_x(vec4 q) {
-    return vec3(1.0f - 2.0f * (q.y * q.y + q.z * q.z), 2.0f * (q.x * q.y + q.w * q.z),
-                2.0f * (q.x * q.z - q.w * q.y));
+return vec3(1.0f - 2.0f * (q.y * q.y + q.z * q.z), 2.0f * (q.x * q.y + q.w * q.z),
+2.0f * (q.x * q.z - q.w * q.y));
 }
 vec3 quaternion_y(vec4 q) {
-    return vec3(2.0f * (q.x * q.y - q.w * q.z), 1.0f - 2.0f * (q.x * q.x + q.z * q.z),
-                2.0f * (q.y * q.z + q.w * q.x));
+return vec3(2.0f * (q.x * q.y - q.w * q.z), 1.0f - 2.0f * (q.x * q.x + q.z * q.z),
+2.0f * (q.y * q.z + q.w * q.x));
 }
 vec3 quaternion_z(vec4 q) {
-    return vec3(2.0f * (q.x * q.z + q.w * q.y), 2.0f * (q.y * q.z - q.w * q.x),
-                1.0f - 2.0f * (q.x * q.x + q.y * q.y));
+return vec3(2.0f * (q.x * q.z + q.w * q.y), 2.0f * (q.y * q.z - q.w * q.x),
+1.0f - 2.0f * (q.x * q.x + q.y * q.y));
 }
 float arctan_unit(float x) {
-    float s = x * x;
-    return x * (1.0f + s * (-0.3333314528f + s * (0.1999355085f + s * (-0.1420889944f +
-               s * (0.1065626393f + s * (-0.0752896400f + s * (0.0429096138f +
-               s * (-0.0161657367f + s * 0.0028662257f))))))));
+float s = x * x;
+return x * (1.0f + s * (-0.3333314528f + s * (0.1999355085f + s * (-0.1420889944f +
+s * (0.1065626393f + s * (-0.0752896400f + s * (0.0429096138f +
+s * (-0.0161657367f + s * 0.0028662257f))))))));
 }
 float sin_quarter(float x) {
-    float s = x * x;
-    return x * (1.0f + s * (-0.1666666664f + s * (0.0083333315f + s * (-0.0001984090f +
-               s * (0.0000027526f + s * -0.0000000239f)))));
+float s = x * x;
+return x * (1.0f + s * (-0.1666666664f + s * (0.0083333315f + s * (-0.0001984090f +
+s * (0.0000027526f + s * -0.0000000239f)))));
 }
 struct slerp_arc {
-    vec4 a;
-    vec4 b;
-    float angle;       // 0 ... pi/2
-    float inverse_sin; // 1 / sin(angle), 0 where the ends agree and a lerp is meant
+vec4 a;
+vec4 b;
+float angle;
+float inverse_sin;
 };
 slerp_arc slerp_begin(vec4 a, vec4 b) {
-    slerp_arc arc;
-    float cosine = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
-    float side = cosine < 0.0f ? -1.0f : 1.0f;
-    arc.a = a;
-    arc.b = b * side;
-    vec4 d = a - arc.b;
-    vec4 s = a + arc.b;
-    float d2 = d.x * d.x + d.y * d.y + d.z * d.z + d.w * d.w;
-    float s2 = s.x * s.x + s.y * s.y + s.z * s.z + s.w * s.w;
-    arc.angle = s2 > 0.0f ? 2.0f * arctan_unit(sqrt(d2 / s2)) : 0.0f;
-    arc.inverse_sin = arc.angle > 0.001f ? 1.0f / sin_quarter(arc.angle) : 0.0f;
-    return arc;
+slerp_arc arc;
+float cosine = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
+float side = cosine < 0.0f ? -1.0f : 1.0f;
+arc.a = a;
+arc.b = b * side;
+vec4 d = a - arc.b;
+vec4 s = a + arc.b;
+float d2 = d.x * d.x + d.y * d.y + d.z * d.z + d.w * d.w;
+float s2 = s.x * s.x + s.y * s.y + s.z * s.z + s.w * s.w;
+arc.angle = s2 > 0.0f ? 2.0f * arctan_unit(sqrt(d2 / s2)) : 0.0f;
+arc.inverse_sin = arc.angle > 0.001f ? 1.0f / sin_quarter(arc.angle) : 0.0f;
+return arc;
 }
 vec4 slerp_at(slerp_arc arc, float t) {
-    float wa = 1.0f - t;
-    float wb = t;
-    if (arc.inverse_sin > 0.0f) {
-        wa = t < 1.0f ? sin_quarter(wa * arc.angle) * arc.inverse_sin : 0.0f;
-        wb = t > 0.0f ? sin_quarter(wb * arc.angle) * arc.inverse_sin : 0.0f;
-        wa = t > 0.0f ? wa : 1.0f;
-        wb = t < 1.0f ? wb : 1.0f;
-    }
-    return arc.a * wa + arc.b * wb;
+float wa = 1.0f - t;
+float wb = t;
+if (arc.inverse_sin > 0.0f) {
+wa = t < 1.0f ? sin_quarter(wa * arc.angle) * arc.inverse_sin : 0.0f;
+wb = t > 0.0f ? sin_quarter(wb * arc.angle) * arc.inverse_sin : 0.0f;
+wa = t > 0.0f ? wa : 1.0f;
+wb = t < 1.0f ? wb : 1.0f;
+}
+return arc.a * wa + arc.b * wb;
 }
 vec4 slerp(vec4 a, vec4 b, float t) {
-    vec4 q = slerp_at(slerp_begin(a, b), t);
-    return q * (1.0f / sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w));
+vec4 q = slerp_at(slerp_begin(a, b), t);
+return q * (1.0f / sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w));
 }
 vec3 hermite_point(vec3 p1, vec3 n1, vec3 p2, vec3 n2, float t) {
-    float s = 1.0f - t;
-    return (p1 * ((1.0f + 2.0f * t) * (s * s)) + n1 * (t * (s * s))) +
-           (p2 * ((t * t) * (1.0f + 2.0f * s)) - n2 * ((t * t) * s));
+float s = 1.0f - t;
+return (p1 * ((1.0f + 2.0f * t) * (s * s)) + n1 * (t * (s * s))) +
+(p2 * ((t * t) * (1.0f + 2.0f * s)) - n2 * ((t * t) * s));
 }
 vec3 hermite_derivative(vec3 p1, vec3 n1, vec3 p2, vec3 n2, float t) {
-    float s = 1.0f - t;
-    return (p2 - p1) * (6.0f * t * s) + (n1 * (s * (1.0f - 3.0f * t)) + n2 * (t * (3.0f * t - 2.0f)));
+float s = 1.0f - t;
+return (p2 - p1) * (6.0f * t * s) + (n1 * (s * (1.0f - 3.0f * t)) + n2 * (t * (3.0f * t - 2.0f)));
 }
 float dot3(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 vec3 cross3(vec3 a, vec3 b) {
-    return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 vec3 unit_or(vec3 v, vec3 otherwise) {
-    float l2 = dot3(v, v);
-    return l2 > 1e-30f ? v * (1.0f / sqrt(l2)) : otherwise;
+float l2 = dot3(v, v);
+return l2 > 1e-30f ? v * (1.0f / sqrt(l2)) : otherwise;
 }
 vec3 double_reflection(vec3 p1, vec3 t1, vec3 r, vec3 p2, vec3 t2) {
-    vec3 v1 = p2 - p1;
-    float c1 = dot3(v1, v1);
-    vec3 r_mirrored = r;
-    vec3 t_mirrored = t1;
-    if (c1 > 1e-30f) {
-        r_mirrored = r - v1 * (2.0f / c1 * dot3(v1, r));
-        t_mirrored = t1 - v1 * (2.0f / c1 * dot3(v1, t1));
-    }
-    vec3 v2 = t2 - t_mirrored;
-    float c2 = dot3(v2, v2);
-    return c2 > 1e-30f ? r_mirrored - v2 * (2.0f / c2 * dot3(v2, r_mirrored)) : r_mirrored;
+vec3 v1 = p2 - p1;
+float c1 = dot3(v1, v1);
+vec3 r_mirrored = r;
+vec3 t_mirrored = t1;
+if (c1 > 1e-30f) {
+r_mirrored = r - v1 * (2.0f / c1 * dot3(v1, r));
+t_mirrored = t1 - v1 * (2.0f / c1 * dot3(v1, t1));
+}
+vec3 v2 = t2 - t_mirrored;
+float c2 = dot3(v2, v2);
+return c2 > 1e-30f ? r_mirrored - v2 * (2.0f / c2 * dot3(v2, r_mirrored)) : r_mirrored;
 }
 struct branch_ring {
-    vec3 centre;
-    float radius;
-    vec3 x;
-    float path;
-    vec3 y;
-    float lean;
-    vec3 z;
-    vec3 tilt;
+vec3 centre;
+float radius;
+vec3 x;
+float path;
+vec3 y;
+float lean;
+vec3 z;
+vec3 tilt;
 };
 branch_ring branch_ring_leaning(branch_ring r, float slope) {
-    r.lean = 1.0f / sqrt(1.0f + slope * slope);
-    r.tilt = r.y * (slope * r.lean);
-    return r;
+r.lean = 1.0f / sqrt(1.0f + slope * slope);
+r.tilt = r.y * (slope * r.lean);
+return r;
 }
 struct branch_curve {
-    vec3 p1;
-    vec3 n1;
-    vec3 p2;
-    vec3 n2;
-    slerp_arc arc;
+vec3 p1;
+vec3 n1;
+vec3 p2;
+vec3 n2;
+slerp_arc arc;
 };
 branch_curve branch_curve_between(branch_end a, branch_end b) {
-    branch_curve c;
-    vec3 chord = b.position - a.position;
-    float l = sqrt(dot3(chord, chord));
-    c.p1 = a.position;
-    c.p2 = b.position;
-    c.n1 = quaternion_y(a.orientation) * l;
-    c.n2 = quaternion_y(b.orientation) * l;
-    c.arc = slerp_begin(a.orientation, b.orientation);
-    return c;
+branch_curve c;
+vec3 chord = b.position - a.position;
+float l = sqrt(dot3(chord, chord));
+c.p1 = a.position;
+c.p2 = b.position;
+c.n1 = quaternion_y(a.orientation) * l;
+c.n2 = quaternion_y(b.orientation) * l;
+c.arc = slerp_begin(a.orientation, b.orientation);
+return c;
 }
 branch_ring branch_ring_slerp(branch_end a, branch_end b, branch_curve c, float t) {
-    branch_ring r;
-    vec4 q = slerp_at(c.arc, t);
-    float l2 = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
-    q = q * (1.0f / sqrt(l2));
-    r.centre = hermite_point(c.p1, c.n1, c.p2, c.n2, t);
-    r.radius = a.radius * (1.0f - t) + b.radius * t;
-    r.path = a.path * (1.0f - t) + b.path * t;
-    r.x = quaternion_x(q);
-    r.y = quaternion_y(q);
-    r.z = quaternion_z(q);
-    return branch_ring_leaning(r, a.slope * (1.0f - t) + b.slope * t);
+branch_ring r;
+vec4 q = slerp_at(c.arc, t);
+float l2 = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+q = q * (1.0f / sqrt(l2));
+r.centre = hermite_point(c.p1, c.n1, c.p2, c.n2, t);
+r.radius = a.radius * (1.0f - t) + b.radius * t;
+r.path = a.path * (1.0f - t) + b.path * t;
+r.x = quaternion_x(q);
+r.y = quaternion_y(q);
+r.z = quaternion_z(q);
+return branch_ring_leaning(r, a.slope * (1.0f - t) + b.slope * t);
 }
 vec3 branch_direction(branch_end a, branch_curve c, uint k, uint last) {
-    float t = float(k) / float(last);
-    return unit_or(hermite_derivative(c.p1, c.n1, c.p2, c.n2, t), quaternion_y(a.orientation));
+float t = float(k) / float(last);
+return unit_or(hermite_derivative(c.p1, c.n1, c.p2, c.n2, t), quaternion_y(a.orientation));
 }
 branch_ring branch_ring_rotation_minimising(branch_end a, branch_end b, branch_curve c, uint k,
-                                            uint last) {
-    branch_ring r = branch_ring_slerp(a, b, c, float(k) / float(last));
-    if (k == 0u || k == last) {
-        return r;
-    }
-    vec3 chord = c.p2 - c.p1;
-    vec3 x = quaternion_x(a.orientation);
-    vec3 x_here = x;
-    vec3 p = vec3(0.0f, 0.0f, 0.0f);
-    vec3 d = branch_direction(a, c, 0u, last);
-    vec3 d_here = d;
-    for (uint i = 1u; i <= last; ++i) {
-        vec3 p_next = hermite_point(vec3(0.0f, 0.0f, 0.0f), c.n1, chord, c.n2, float(i) / float(last));
-        vec3 d_next = branch_direction(a, c, i, last);
-        x = double_reflection(p, d, x, p_next, d_next);
-        p = p_next;
-        d = d_next;
-        if (i == k) {
-            x_here = x;
-            d_here = d;
-        }
-    }
-    vec3 x_end = quaternion_x(b.orientation);
-    float twist = atan(dot3(cross3(x, x_end), d), dot3(x, x_end));
-    float angle = twist * float(k) / float(last);
-    vec3 side = cross3(d_here, x_here);
-    vec3 turned = x_here * cos(angle) + side * sin(angle);
-    r.y = d_here;
-    r.x = unit_or(turned - d_here * dot3(turned, d_here), r.x);
-    r.z = cross3(r.x, r.y);
-    return branch_ring_leaning(r, a.slope * (1.0f - float(k) / float(last)) +
-                                      b.slope * (float(k) / float(last)));
+uint last) {
+branch_ring r = branch_ring_slerp(a, b, c, float(k) / float(last));
+if (k == 0u || k == last) {
+return r;
+}
+vec3 chord = c.p2 - c.p1;
+vec3 x = quaternion_x(a.orientation);
+vec3 x_here = x;
+vec3 p = vec3(0.0f, 0.0f, 0.0f);
+vec3 d = branch_direction(a, c, 0u, last);
+vec3 d_here = d;
+for (uint i = 1u; i <= last; ++i) {
+vec3 p_next = hermite_point(vec3(0.0f, 0.0f, 0.0f), c.n1, chord, c.n2, float(i) / float(last));
+vec3 d_next = branch_direction(a, c, i, last);
+x = double_reflection(p, d, x, p_next, d_next);
+p = p_next;
+d = d_next;
+if (i == k) {
+x_here = x;
+d_here = d;
+}
+}
+vec3 x_end = quaternion_x(b.orientation);
+float twist = atan(dot3(cross3(x, x_end), d), dot3(x, x_end));
+float angle = twist * float(k) / float(last);
+vec3 side = cross3(d_here, x_here);
+vec3 turned = x_here * cos(angle) + side * sin(angle);
+r.y = d_here;
+r.x = unit_or(turned - d_here * dot3(turned, d_here), r.x);
+r.z = cross3(r.x, r.y);
+return branch_ring_leaning(r, a.slope * (1.0f - float(k) / float(last)) +
+b.slope * (float(k) / float(last)));
 }
 surface_vertex branch_vertex(branch_ring r, vec4 corner) {
-    surface_vertex vertex;
-    vec3 outward = r.x * corner.x - r.z * corner.y;
-    vec3 along = r.x * corner.y + r.z * corner.x;
-    vertex.position = r.centre + outward * r.radius;
-    vertex.u = corner.z;
-    vertex.normal = outward * r.lean - r.tilt;
-    vertex.v = r.path;
-    vertex.tangent = vec4(-along.x, -along.y, -along.z, 1.0f);
-    return vertex;
+surface_vertex vertex;
+vec3 outward = r.x * corner.x - r.z * corner.y;
+vec3 along = r.x * corner.y + r.z * corner.x;
+vertex.position = r.centre + outward * r.radius;
+vertex.u = corner.z;
+vertex.normal = outward * r.lean - r.tilt;
+vertex.v = r.path;
+vertex.tangent = vec4(-along.x, -along.y, -along.z, 1.0f);
+return vertex;
 }
 branch_ring branch_ring_at_end(branch_end e) {
-    branch_ring r;
-    float l2 = e.orientation.x * e.orientation.x + e.orientation.y * e.orientation.y +
-               e.orientation.z * e.orientation.z + e.orientation.w * e.orientation.w;
-    vec4 q = e.orientation * (1.0f / sqrt(l2));
-    r.centre = e.position;
-    r.radius = e.radius;
-    r.path = e.path;
-    r.x = quaternion_x(q);
-    r.y = quaternion_y(q);
-    r.z = quaternion_z(q);
-    return branch_ring_leaning(r, 0.0f);
+branch_ring r;
+float l2 = e.orientation.x * e.orientation.x + e.orientation.y * e.orientation.y +
+e.orientation.z * e.orientation.z + e.orientation.w * e.orientation.w;
+vec4 q = e.orientation * (1.0f / sqrt(l2));
+r.centre = e.position;
+r.radius = e.radius;
+r.path = e.path;
+r.x = quaternion_x(q);
+r.y = quaternion_y(q);
+r.z = quaternion_z(q);
+return branch_ring_leaning(r, 0.0f);
 }
 uint branch_cap_corner(uint i, uint sides, bool base) {
-    uint corner = i == 0u ? 0u : ((i & 1u) == 1u ? (i + 1u) / 2u : sides - i / 2u);
-    return base && corner != 0u ? sides - corner : corner;
+uint corner = i == 0u ? 0u : ((i & 1u) == 1u ? (i + 1u) / 2u : sides - i / 2u);
+return base && corner != 0u ? sides - corner : corner;
 }
 surface_vertex branch_cap_vertex(branch_ring r, vec4 corner, bool base) {
-    surface_vertex vertex = branch_vertex(r, corner);
-    vertex.normal = base ? r.y * -1.0f : r.y;
-    vertex.u = 0.5f + 0.5f * corner.x;
-    vertex.v = r.path + r.radius * corner.y;
-    vertex.tangent = vec4(r.x.x, r.x.y, r.x.z, base ? -1.0f : 1.0f);
-    return vertex;
+surface_vertex vertex = branch_vertex(r, corner);
+vertex.normal = base ? r.y * -1.0f : r.y;
+vertex.u = 0.5f + 0.5f * corner.x;
+vertex.v = r.path + r.radius * corner.y;
+vertex.tangent = vec4(r.x.x, r.x.y, r.x.z, base ? -1.0f : 1.0f);
+return vertex;
 }
 layout(std430, binding = 0) readonly buffer caps_buffer { uint caps[]; };
 layout(std430, binding = 1) readonly buffer ends_buffer { branch_end ends[]; };
 layout(std430, binding = 2) readonly buffer corners_buffer { vec4 corners[]; };
 uint kernel_ring_vertices() { return sides; }
 void kernel_ring(uint i, uint first, uint count) {
-    bool base = (caps[i] & 1u) != 0u;
-    branch_ring r = branch_ring_at_end(ends[caps[i] / 2u]);
-    for (uint j = first; j < first + count; ++j) {
-        surface_vertex s =
-            branch_cap_vertex(r, corners[branch_cap_corner(j, sides, base)], base);
-        vertex_out[0] = vec4(s.position, s.u);
-        vertex_out[1] = vec4(s.normal, s.v);
-        vertex_out[2] = s.tangent;
-        emit_vertex();
-    }
+bool base = (caps[i] & 1u) != 0u;
+branch_ring r = branch_ring_at_end(ends[caps[i] / 2u]);
+for (uint j = first; j < first + count; ++j) {
+surface_vertex s =
+branch_cap_vertex(r, corners[branch_cap_corner(j, sides, base)], base);
+vertex_out[0] = vec4(s.position, s.u);
+vertex_out[1] = vec4(s.normal, s.v);
+vertex_out[2] = s.tangent;
+emit_vertex();
+}
 }
 #ifndef SKYBARK_MAX_VERTICES
 #define SKYBARK_MAX_VERTICES 16
@@ -400,21 +400,21 @@ layout(location = 0) flat in uint skybark_point[1];
 layout(xfb_buffer = 0, xfb_stride = 16 * VERTEX_VEC4S) out;
 layout(location = 0, xfb_buffer = 0, xfb_offset = 0) out vec4 skybark_vertex[VERTEX_VEC4S];
 void emit_vertex() {
-    for (int v = 0; v < VERTEX_VEC4S; ++v) {
-        skybark_vertex[v] = vertex_out[v];
-    }
-    EmitVertex();
+for (int v = 0; v < VERTEX_VEC4S; ++v) {
+skybark_vertex[v] = vertex_out[v];
+}
+EmitVertex();
 }
 layout(points, max_vertices = SKYBARK_MAX_VERTICES) out;
 void main() {
-    uint vertices = kernel_ring_vertices();
-    uint part = skybark_header.z;
-    uint parts = (vertices + part - 1u) / part;
-    uint element = skybark_point[0] / parts;
-    uint first = (skybark_point[0] - element * parts) * part;
-    kernel_ring(skybark_header.x + element, first, min(part, vertices - first));
+uint vertices = kernel_ring_vertices();
+uint part = skybark_header.z;
+uint parts = (vertices + part - 1u) / part;
+uint element = skybark_point[0] / parts;
+uint first = (skybark_point[0] - element * parts) * part;
+kernel_ring(skybark_header.x + element, first, min(part, vertices - first));
 }
-)glsl";
+)glsl", 11280};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5ef3261e3e30c20554f385f969afe85bfd0d233253bcda7ab659f5afa8944fbc
+// sha256 8ce16bca700e595aa023fe32989f82588c280476a29252d946ffe7d0c7f3416f
 #pragma once
 
 #include <skybark/kernels/bundle_crowds.hpp>
@@ -10,7 +10,7 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::bundle_crowds> {
-    static constexpr std::string_view map_comp = R"glsl(#version 450
+    static constexpr std::string_view map_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 64) in;
@@ -30,15 +30,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -63,23 +63,23 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 layout(std430, binding = 0) readonly buffer keys_buffer { uint keys[]; };
 layout(std430, binding = 1) writeonly buffer crowds_buffer { uint crowds[]; };
 void kernel_map(uint i) {
-    uint first = i * stride;
-    crowds[i] = keys[first] == keys[first + stride - 1u] ? 1u : 0u;
+uint first = i * stride;
+crowds[i] = keys[first] == keys[first + stride - 1u] ? 1u : 0u;
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
-    return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
-                                         : skybark_header.y;
+return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
+: skybark_header.y;
 }
 void main() {
-    uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
-             gl_LocalInvocationID.x;
-    if (i < skybark_elements()) {
-        kernel_map(skybark_header.x + i);
-    }
+uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
+gl_LocalInvocationID.x;
+if (i < skybark_elements()) {
+kernel_map(skybark_header.x + i);
 }
-)glsl";
-    static constexpr std::string_view levels_comp = R"glsl(#version 450
+}
+)glsl", 2261};
+    static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
 #define writeonly coherent writeonly
@@ -101,15 +101,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -134,21 +134,21 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 layout(std430, binding = 0) readonly buffer keys_buffer { uint keys[]; };
 layout(std430, binding = 1) writeonly buffer crowds_buffer { uint crowds[]; };
 void kernel_map(uint i) {
-    uint first = i * stride;
-    crowds[i] = keys[first] == keys[first + stride - 1u] ? 1u : 0u;
+uint first = i * stride;
+crowds[i] = keys[first] == keys[first + stride - 1u] ? 1u : 0u;
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
 void main() {
-    for (uint r = 0u; r < skybark_header.y; ++r) {
-        uvec2 elements = skybark_ranges[skybark_header.x + r];
-        for (uint i = gl_LocalInvocationID.x; i < elements.y; i += 256u) {
-            kernel_map(elements.x + i);
-        }
-        memoryBarrierBuffer();
-        barrier();
-    }
+for (uint r = 0u; r < skybark_header.y; ++r) {
+uvec2 elements = skybark_ranges[skybark_header.x + r];
+for (uint i = gl_LocalInvocationID.x; i < elements.y; i += 256u) {
+kernel_map(elements.x + i);
 }
-)glsl";
+memoryBarrierBuffer();
+barrier();
+}
+}
+)glsl", 2276};
 };
 
 } // namespace skybark::opengl

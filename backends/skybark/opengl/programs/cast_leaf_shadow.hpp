@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0fc6a902c183003eabc186bf358eb371aa1e14fef4080ef2b76a74ec937b4dd3
+// sha256 aa11431558e2ae09d13f72c75cd556dfc58aca91ebc00a2fa7a77f69085021e1
 #pragma once
 
 #include <skybark/kernels/cast_leaf_shadow.hpp>
@@ -10,7 +10,7 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::cast_leaf_shadow> {
-    static constexpr std::string_view draw_vert = R"glsl(#version 450
+    static constexpr std::string_view draw_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_VERTEX_STAGE
 #define KERNEL_VARYINGS 1
@@ -30,15 +30,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -61,256 +61,256 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct surface_vertex {
-    vec3 position;
-    float u;
-    vec3 normal;
-    float v;
-    vec4 tangent;
+vec3 position;
+float u;
+vec3 normal;
+float v;
+vec4 tangent;
 };
 struct branch_end {
-    vec3 position;
-    float radius;
-    vec4 orientation;
-    float path;
-    float slope;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+vec4 orientation;
+float path;
+float slope;
+float reserved0;
+float reserved1;
 };
 struct branch_segment {
-    uint start;
-    uint end;
-    uint caps;
-    uint reserved;
+uint start;
+uint end;
+uint caps;
+uint reserved;
 };
 struct segment_pose {
-    vec4 rotation;
-    vec3 base;
-    float reserved0;
-    vec3 shift;
-    float reserved1;
+vec4 rotation;
+vec3 base;
+float reserved0;
+vec3 shift;
+float reserved1;
 };
 struct end_carrier {
-    uint moved_by;
-    uint turned_by;
-    uint and_by;
-    uint reserved;
+uint moved_by;
+uint turned_by;
+uint and_by;
+uint reserved;
 };
 struct leaf {
-    vec3 position;
-    float width;
-    vec4 orientation;
-    float length;
-    uint carrier;
-    uint seed;
-    float fold;
+vec3 position;
+float width;
+vec4 orientation;
+float length;
+uint carrier;
+uint seed;
+float fold;
 };
 struct segment_load {
-    vec3 force;
-    float drag;
+vec3 force;
+float drag;
 };
 struct cloud_particle {
-    vec3 position;
-    float radius;
-    float optical_depth;
-    float albedo;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+float optical_depth;
+float albedo;
+float reserved0;
+float reserved1;
 };
 struct light_grid {
-    vec4 anchor;
-    vec4 row_x;
-    vec4 row_y;
-    vec4 row_z;
-    vec4 voxel;
+vec4 anchor;
+vec4 row_x;
+vec4 row_y;
+vec4 row_z;
+vec4 voxel;
 };
 struct gather_triangle {
-    vec3 a;
-    uint material;
-    vec3 b;
-    uint alpha;
-    vec3 c;
-    uint reserved;
+vec3 a;
+uint material;
+vec3 b;
+uint alpha;
+vec3 c;
+uint reserved;
 };
 struct gather_material {
-    vec3 diffuse;
-    uint two_sided;
-    vec3 emission;
-    float reserved0;
-    vec3 transmission;
-    float reserved1;
+vec3 diffuse;
+uint two_sided;
+vec3 emission;
+float reserved0;
+vec3 transmission;
+float reserved1;
 };
 struct gather_sample {
-    vec3 position;
-    float reserved0;
-    vec3 normal;
-    float reserved1;
+vec3 position;
+float reserved0;
+vec3 normal;
+float reserved1;
 };
 struct gather_hit {
-    float distance;
-    uint surface;
-    float u;
-    float v;
+float distance;
+uint surface;
+float u;
+float v;
 };
 struct ray_bundle {
-    vec4 centre;
-    vec4 right;
-    vec4 up;
-    vec4 direction;
+vec4 centre;
+vec4 right;
+vec4 up;
+vec4 direction;
 };
 struct patch_table {
-    uint front;
-    uint back;
-    uint rows;
-    uint reserved;
+uint front;
+uint back;
+uint rows;
+uint reserved;
 };
 struct daylight_sky {
-    vec4 a; // Perez' coefficients: x for Y, y for x, z for y
-    vec4 b;
-    vec4 c;
-    vec4 d;
-    vec4 e;
-    vec4 zenith;     // Y, x, y at the zenith over Perez' function there
-    vec4 to_sun;     // xyz: unit
-    vec4 sunlight;   // rgb: irradiance of a surface that faces the sun over pi
+vec4 a;
+vec4 b;
+vec4 c;
+vec4 d;
+vec4 e;
+vec4 zenith;
+vec4 to_sun;
+vec4 sunlight;
 };
 float exp_shared(float x) {
-    float s = x * (1.0f / 64.0f);
-    float p = 1.0f + s * (1.0f + s * (0.5f + s * (0.16666667f + s * (0.041666667f + s * 0.0083333333f))));
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    return p * p;
+float s = x * (1.0f / 64.0f);
+float p = 1.0f + s * (1.0f + s * (0.5f + s * (0.16666667f + s * (0.041666667f + s * 0.0083333333f))));
+p = p * p;
+p = p * p;
+p = p * p;
+p = p * p;
+p = p * p;
+return p * p;
 }
 float arccos_shared(float x) {
-    float c = clamp(x, -1.0f, 1.0f);
-    return atan(sqrt((1.0f - c) * (1.0f + c)), c);
+float c = clamp(x, -1.0f, 1.0f);
+return atan(sqrt((1.0f - c) * (1.0f + c)), c);
 }
 float perez(float a, float b, float c, float d, float e, float cos_zenith, float gamma) {
-    float cos_gamma = cos(gamma);
-    return (1.0f + a * exp_shared(b / cos_zenith)) *
-           (1.0f + c * exp_shared(d * gamma) + e * cos_gamma * cos_gamma);
+float cos_gamma = cos(gamma);
+return (1.0f + a * exp_shared(b / cos_zenith)) *
+(1.0f + c * exp_shared(d * gamma) + e * cos_gamma * cos_gamma);
 }
 vec3 srgb_from_xyY(float luminance, float x, float y) {
-    float X = luminance * x / y;
-    float Z = luminance * (1.0f - x - y) / y;
-    return vec3(3.2406f * X - 1.5372f * luminance - 0.4986f * Z,
-                -0.9689f * X + 1.8758f * luminance + 0.0415f * Z,
-                0.0557f * X - 0.2040f * luminance + 1.0570f * Z);
+float X = luminance * x / y;
+float Z = luminance * (1.0f - x - y) / y;
+return vec3(3.2406f * X - 1.5372f * luminance - 0.4986f * Z,
+-0.9689f * X + 1.8758f * luminance + 0.0415f * Z,
+0.0557f * X - 0.2040f * luminance + 1.0570f * Z);
 }
 vec3 sky_radiance(daylight_sky sky, vec3 to) {
-    float up = max(to.y, 0.01f);
-    float flat_length = sqrt(max(1.0f - up * up, 0.0f) /
-                             max(to.x * to.x + to.z * to.z, 1e-12f));
-    float cos_gamma = to.x * flat_length * sky.to_sun.x + up * sky.to_sun.y +
-                      to.z * flat_length * sky.to_sun.z;
-    float gamma = arccos_shared(cos_gamma);
-    float luminance = sky.zenith.x * perez(sky.a.x, sky.b.x, sky.c.x, sky.d.x, sky.e.x, up, gamma);
-    float x = sky.zenith.y * perez(sky.a.y, sky.b.y, sky.c.y, sky.d.y, sky.e.y, up, gamma);
-    float y = sky.zenith.z * perez(sky.a.z, sky.b.z, sky.c.z, sky.d.z, sky.e.z, up, gamma);
-    vec3 rgb = srgb_from_xyY(luminance, x, y);
-    return vec3(max(rgb.x, 0.0f), max(rgb.y, 0.0f), max(rgb.z, 0.0f));
+float up = max(to.y, 0.01f);
+float flat_length = sqrt(max(1.0f - up * up, 0.0f) /
+max(to.x * to.x + to.z * to.z, 1e-12f));
+float cos_gamma = to.x * flat_length * sky.to_sun.x + up * sky.to_sun.y +
+to.z * flat_length * sky.to_sun.z;
+float gamma = arccos_shared(cos_gamma);
+float luminance = sky.zenith.x * perez(sky.a.x, sky.b.x, sky.c.x, sky.d.x, sky.e.x, up, gamma);
+float x = sky.zenith.y * perez(sky.a.y, sky.b.y, sky.c.y, sky.d.y, sky.e.y, up, gamma);
+float y = sky.zenith.z * perez(sky.a.z, sky.b.z, sky.c.z, sky.d.z, sky.e.z, up, gamma);
+vec3 rgb = srgb_from_xyY(luminance, x, y);
+return vec3(max(rgb.x, 0.0f), max(rgb.y, 0.0f), max(rgb.z, 0.0f));
 }
 float hash_unit(uint x, uint y, uint z) {
-    uint h = x * 73856093u ^ y * 19349663u ^ z * 83492791u;
-    h = h ^ (h >> 16u);
-    h = h * 2246822519u;
-    h = h ^ (h >> 13u);
-    h = h * 3266489917u;
-    h = h ^ (h >> 16u);
-    return float(h >> 8u) * (1.0f / 16777216.0f);
+uint h = x * 73856093u ^ y * 19349663u ^ z * 83492791u;
+h = h ^ (h >> 16u);
+h = h * 2246822519u;
+h = h ^ (h >> 13u);
+h = h * 3266489917u;
+h = h ^ (h >> 16u);
+return float(h >> 8u) * (1.0f / 16777216.0f);
 }
 float value_noise(float x, float y, float z, uint period) {
-    float fx = floor(x);
-    float fy = floor(y);
-    float fz = floor(z);
-    float tx = x - fx;
-    float ty = y - fy;
-    float tz = z - fz;
-    tx = tx * tx * (3.0f - 2.0f * tx);
-    ty = ty * ty * (3.0f - 2.0f * ty);
-    tz = tz * tz * (3.0f - 2.0f * tz);
-    uint x0 = uint(int(fx) + 1048576) % period;
-    uint x1 = (x0 + 1u) % period;
-    uint y0 = uint(int(fy) + 1048576);
-    uint z0 = uint(int(fz) + 1048576);
-    float n00 = mix(hash_unit(x0, y0, z0), hash_unit(x1, y0, z0), tx);
-    float n10 = mix(hash_unit(x0, y0 + 1u, z0), hash_unit(x1, y0 + 1u, z0), tx);
-    float n01 = mix(hash_unit(x0, y0, z0 + 1u), hash_unit(x1, y0, z0 + 1u), tx);
-    float n11 = mix(hash_unit(x0, y0 + 1u, z0 + 1u), hash_unit(x1, y0 + 1u, z0 + 1u), tx);
-    return mix(mix(n00, n10, ty), mix(n01, n11, ty), tz);
+float fx = floor(x);
+float fy = floor(y);
+float fz = floor(z);
+float tx = x - fx;
+float ty = y - fy;
+float tz = z - fz;
+tx = tx * tx * (3.0f - 2.0f * tx);
+ty = ty * ty * (3.0f - 2.0f * ty);
+tz = tz * tz * (3.0f - 2.0f * tz);
+uint x0 = uint(int(fx) + 1048576) % period;
+uint x1 = (x0 + 1u) % period;
+uint y0 = uint(int(fy) + 1048576);
+uint z0 = uint(int(fz) + 1048576);
+float n00 = mix(hash_unit(x0, y0, z0), hash_unit(x1, y0, z0), tx);
+float n10 = mix(hash_unit(x0, y0 + 1u, z0), hash_unit(x1, y0 + 1u, z0), tx);
+float n01 = mix(hash_unit(x0, y0, z0 + 1u), hash_unit(x1, y0, z0 + 1u), tx);
+float n11 = mix(hash_unit(x0, y0 + 1u, z0 + 1u), hash_unit(x1, y0 + 1u, z0 + 1u), tx);
+return mix(mix(n00, n10, ty), mix(n01, n11, ty), tz);
 }
 vec3 ambient_light(vec4 h0, vec4 h1, vec4 h2, vec4 h3, vec3 n) {
-    return vec3(max(h0.x + h1.x * n.x + h2.x * n.y + h3.x * n.z, 0.0f),
-                max(h0.y + h1.y * n.x + h2.y * n.y + h3.y * n.z, 0.0f),
-                max(h0.z + h1.z * n.x + h2.z * n.y + h3.z * n.z, 0.0f));
+return vec3(max(h0.x + h1.x * n.x + h2.x * n.y + h3.x * n.z, 0.0f),
+max(h0.y + h1.y * n.x + h2.y * n.y + h3.y * n.z, 0.0f),
+max(h0.z + h1.z * n.x + h2.z * n.y + h3.z * n.z, 0.0f));
 }
 vec3 lit(vec3 albedo, vec3 n, daylight_sky sky, float sun, vec3 ambient) {
-    float facing = max(n.x * sky.to_sun.x + n.y * sky.to_sun.y + n.z * sky.to_sun.z, 0.0f) * sun;
-    return vec3(albedo.x * (ambient.x + sky.sunlight.x * facing),
-                albedo.y * (ambient.y + sky.sunlight.y * facing),
-                albedo.z * (ambient.z + sky.sunlight.z * facing));
+float facing = max(n.x * sky.to_sun.x + n.y * sky.to_sun.y + n.z * sky.to_sun.z, 0.0f) * sun;
+return vec3(albedo.x * (ambient.x + sky.sunlight.x * facing),
+albedo.y * (ambient.y + sky.sunlight.y * facing),
+albedo.z * (ambient.z + sky.sunlight.z * facing));
 }
 float bark_height(float u, float v, uint cells) {
-    float around = u * float(cells);
-    float warp = value_noise(around * 0.5f, v * 3.0f, 7.0f, max(cells / 2u, 1u));
-    float furrow = value_noise(around + 2.0f * warp, v * 6.0f, 0.0f, cells);
-    float fine = value_noise(around * 3.0f, v * 24.0f, 3.0f, cells * 3u);
-    return 0.7f * furrow + 0.3f * fine;
+float around = u * float(cells);
+float warp = value_noise(around * 0.5f, v * 3.0f, 7.0f, max(cells / 2u, 1u));
+float furrow = value_noise(around + 2.0f * warp, v * 6.0f, 0.0f, cells);
+float fine = value_noise(around * 3.0f, v * 24.0f, 3.0f, cells * 3u);
+return 0.7f * furrow + 0.3f * fine;
 }
 vec3 bark_albedo(float height) {
-    return vec3(mix(0.10f, 0.34f, height), mix(0.075f, 0.27f, height), mix(0.055f, 0.20f, height));
+return vec3(mix(0.10f, 0.34f, height), mix(0.075f, 0.27f, height), mix(0.055f, 0.20f, height));
 }
 vec3 grass_albedo(float x, float z) {
-    float wide = value_noise(x * 0.13f, z * 0.13f, 1.0f, 2097152u);
-    float middle = value_noise(x * 0.9f, z * 0.9f, 2.0f, 2097152u);
-    float fine = value_noise(x * 9.0f, z * 9.0f, 5.0f, 2097152u);
-    float straw = clamp(wide * 1.3f - 0.35f + 0.3f * middle, 0.0f, 1.0f);
-    float shade = 0.55f + 0.55f * fine + 0.25f * middle;
-    return vec3(mix(0.075f, 0.17f, straw) * shade, mix(0.105f, 0.155f, straw) * shade,
-                mix(0.030f, 0.065f, straw) * shade);
+float wide = value_noise(x * 0.13f, z * 0.13f, 1.0f, 2097152u);
+float middle = value_noise(x * 0.9f, z * 0.9f, 2.0f, 2097152u);
+float fine = value_noise(x * 9.0f, z * 9.0f, 5.0f, 2097152u);
+float straw = clamp(wide * 1.3f - 0.35f + 0.3f * middle, 0.0f, 1.0f);
+float shade = 0.55f + 0.55f * fine + 0.25f * middle;
+return vec3(mix(0.075f, 0.17f, straw) * shade, mix(0.105f, 0.155f, straw) * shade,
+mix(0.030f, 0.065f, straw) * shade);
 }
 float haze(float distance) {
-    return 1.0f - exp_shared(-min(distance, 30000.0f) * (1.0f / 2500.0f));
+return 1.0f - exp_shared(-min(distance, 30000.0f) * (1.0f / 2500.0f));
 }
 float srgb_encode(float x) {
-    float c = clamp(x, 0.0f, 1.0f);
-    return c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 0.41666667f) - 0.055f;
+float c = clamp(x, 0.0f, 1.0f);
+return c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 0.41666667f) - 0.055f;
 }
 float display(float x) {
-    return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
+return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
 }
 struct scene_record {
-    mat4 to_clip;
-    mat4 from_clip;
-    mat4 to_shadow;
-    vec4 camera;
-    vec4 shadow;
-    daylight_sky sky;
-    vec4 ambient[4];
+mat4 to_clip;
+mat4 from_clip;
+mat4 to_shadow;
+vec4 camera;
+vec4 shadow;
+daylight_sky sky;
+vec4 ambient[4];
 };
 #ifdef SKYBARK_FRAGMENT_STAGE
 #ifdef KERNEL_IMAGES
 float sun_at(scene_record scene, vec3 position, vec3 normal) {
-    vec3 raised = position + normal * (scene.shadow.x * scene.shadow.z);
-    vec4 p = scene.to_shadow * vec4(raised, 1.0);
-    vec2 texel = vec2(p.x * 0.5 + 0.5, 0.5 - p.y * 0.5) / scene.shadow.y - 0.5;
-    ivec2 size = textureSize(kernel_images[0], 0);
-    vec2 corner = floor(texel);
-    vec2 part = texel - corner;
-    float lit_texels = 0.0;
-    for (int y = -1; y <= 2; ++y) {
-        for (int x = -1; x <= 2; ++x) {
-            ivec2 at = ivec2(corner) + ivec2(x, y);
-            float wx = x == -1 ? 1.0 - part.x : (x == 2 ? part.x : 1.0);
-            float wy = y == -1 ? 1.0 - part.y : (y == 2 ? part.y : 1.0);
-            bool inside = at.x >= 0 && at.y >= 0 && at.x < size.x && at.y < size.y;
-            float depth = inside ? texelFetch(kernel_images[0], at, 0).r : 1.0;
-            lit_texels += min(p.z, 1.0) <= depth ? wx * wy : 0.0;
-        }
-    }
-    return lit_texels / 9.0;
+vec3 raised = position + normal * (scene.shadow.x * scene.shadow.z);
+vec4 p = scene.to_shadow * vec4(raised, 1.0);
+vec2 texel = vec2(p.x * 0.5 + 0.5, 0.5 - p.y * 0.5) / scene.shadow.y - 0.5;
+ivec2 size = textureSize(kernel_images[0], 0);
+vec2 corner = floor(texel);
+vec2 part = texel - corner;
+float lit_texels = 0.0;
+for (int y = -1; y <= 2; ++y) {
+for (int x = -1; x <= 2; ++x) {
+ivec2 at = ivec2(corner) + ivec2(x, y);
+float wx = x == -1 ? 1.0 - part.x : (x == 2 ? part.x : 1.0);
+float wy = y == -1 ? 1.0 - part.y : (y == 2 ? part.y : 1.0);
+bool inside = at.x >= 0 && at.y >= 0 && at.x < size.x && at.y < size.y;
+float depth = inside ? texelFetch(kernel_images[0], at, 0).r : 1.0;
+lit_texels += min(p.z, 1.0) <= depth ? wx * wy : 0.0;
+}
+}
+return lit_texels / 9.0;
 }
 #endif
 #endif
@@ -318,20 +318,20 @@ layout(std430, binding = 0) readonly buffer vertices_buffer { vec4 vertices[]; }
 layout(std430, binding = 1) readonly buffer scene_buffer { scene_record scene; };
 #ifdef SKYBARK_VERTEX_STAGE
 vec4 kernel_vertex(uint index) {
-    vec4 position = vertices[3u * index];
-    varying_out[0] = vec4(position.w, vertices[3u * index + 1u].w, 0.0, 0.0);
-    return scene.to_shadow * vec4(position.xyz, 1.0);
+vec4 position = vertices[3u * index];
+varying_out[0] = vec4(position.w, vertices[3u * index + 1u].w, 0.0, 0.0);
+return scene.to_shadow * vec4(position.xyz, 1.0);
 }
 #endif
 #ifdef SKYBARK_FRAGMENT_STAGE
 bool kernel_fragment(vec2 pixel, bool front) {
-    color_out = vec4(0.0);
-    return textureLod(kernel_images[0], varying_in[0].xy, 0.0).w >= 0.5;
+color_out = vec4(0.0);
+return textureLod(kernel_images[0], varying_in[0].xy, 0.0).w >= 0.5;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl";
-    static constexpr std::string_view draw_frag = R"glsl(#version 450
+)glsl", 9208};
+    static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
 #define KERNEL_VARYINGS 1
@@ -351,15 +351,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -382,256 +382,256 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct surface_vertex {
-    vec3 position;
-    float u;
-    vec3 normal;
-    float v;
-    vec4 tangent;
+vec3 position;
+float u;
+vec3 normal;
+float v;
+vec4 tangent;
 };
 struct branch_end {
-    vec3 position;
-    float radius;
-    vec4 orientation;
-    float path;
-    float slope;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+vec4 orientation;
+float path;
+float slope;
+float reserved0;
+float reserved1;
 };
 struct branch_segment {
-    uint start;
-    uint end;
-    uint caps;
-    uint reserved;
+uint start;
+uint end;
+uint caps;
+uint reserved;
 };
 struct segment_pose {
-    vec4 rotation;
-    vec3 base;
-    float reserved0;
-    vec3 shift;
-    float reserved1;
+vec4 rotation;
+vec3 base;
+float reserved0;
+vec3 shift;
+float reserved1;
 };
 struct end_carrier {
-    uint moved_by;
-    uint turned_by;
-    uint and_by;
-    uint reserved;
+uint moved_by;
+uint turned_by;
+uint and_by;
+uint reserved;
 };
 struct leaf {
-    vec3 position;
-    float width;
-    vec4 orientation;
-    float length;
-    uint carrier;
-    uint seed;
-    float fold;
+vec3 position;
+float width;
+vec4 orientation;
+float length;
+uint carrier;
+uint seed;
+float fold;
 };
 struct segment_load {
-    vec3 force;
-    float drag;
+vec3 force;
+float drag;
 };
 struct cloud_particle {
-    vec3 position;
-    float radius;
-    float optical_depth;
-    float albedo;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+float optical_depth;
+float albedo;
+float reserved0;
+float reserved1;
 };
 struct light_grid {
-    vec4 anchor;
-    vec4 row_x;
-    vec4 row_y;
-    vec4 row_z;
-    vec4 voxel;
+vec4 anchor;
+vec4 row_x;
+vec4 row_y;
+vec4 row_z;
+vec4 voxel;
 };
 struct gather_triangle {
-    vec3 a;
-    uint material;
-    vec3 b;
-    uint alpha;
-    vec3 c;
-    uint reserved;
+vec3 a;
+uint material;
+vec3 b;
+uint alpha;
+vec3 c;
+uint reserved;
 };
 struct gather_material {
-    vec3 diffuse;
-    uint two_sided;
-    vec3 emission;
-    float reserved0;
-    vec3 transmission;
-    float reserved1;
+vec3 diffuse;
+uint two_sided;
+vec3 emission;
+float reserved0;
+vec3 transmission;
+float reserved1;
 };
 struct gather_sample {
-    vec3 position;
-    float reserved0;
-    vec3 normal;
-    float reserved1;
+vec3 position;
+float reserved0;
+vec3 normal;
+float reserved1;
 };
 struct gather_hit {
-    float distance;
-    uint surface;
-    float u;
-    float v;
+float distance;
+uint surface;
+float u;
+float v;
 };
 struct ray_bundle {
-    vec4 centre;
-    vec4 right;
-    vec4 up;
-    vec4 direction;
+vec4 centre;
+vec4 right;
+vec4 up;
+vec4 direction;
 };
 struct patch_table {
-    uint front;
-    uint back;
-    uint rows;
-    uint reserved;
+uint front;
+uint back;
+uint rows;
+uint reserved;
 };
 struct daylight_sky {
-    vec4 a; // Perez' coefficients: x for Y, y for x, z for y
-    vec4 b;
-    vec4 c;
-    vec4 d;
-    vec4 e;
-    vec4 zenith;     // Y, x, y at the zenith over Perez' function there
-    vec4 to_sun;     // xyz: unit
-    vec4 sunlight;   // rgb: irradiance of a surface that faces the sun over pi
+vec4 a;
+vec4 b;
+vec4 c;
+vec4 d;
+vec4 e;
+vec4 zenith;
+vec4 to_sun;
+vec4 sunlight;
 };
 float exp_shared(float x) {
-    float s = x * (1.0f / 64.0f);
-    float p = 1.0f + s * (1.0f + s * (0.5f + s * (0.16666667f + s * (0.041666667f + s * 0.0083333333f))));
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    return p * p;
+float s = x * (1.0f / 64.0f);
+float p = 1.0f + s * (1.0f + s * (0.5f + s * (0.16666667f + s * (0.041666667f + s * 0.0083333333f))));
+p = p * p;
+p = p * p;
+p = p * p;
+p = p * p;
+p = p * p;
+return p * p;
 }
 float arccos_shared(float x) {
-    float c = clamp(x, -1.0f, 1.0f);
-    return atan(sqrt((1.0f - c) * (1.0f + c)), c);
+float c = clamp(x, -1.0f, 1.0f);
+return atan(sqrt((1.0f - c) * (1.0f + c)), c);
 }
 float perez(float a, float b, float c, float d, float e, float cos_zenith, float gamma) {
-    float cos_gamma = cos(gamma);
-    return (1.0f + a * exp_shared(b / cos_zenith)) *
-           (1.0f + c * exp_shared(d * gamma) + e * cos_gamma * cos_gamma);
+float cos_gamma = cos(gamma);
+return (1.0f + a * exp_shared(b / cos_zenith)) *
+(1.0f + c * exp_shared(d * gamma) + e * cos_gamma * cos_gamma);
 }
 vec3 srgb_from_xyY(float luminance, float x, float y) {
-    float X = luminance * x / y;
-    float Z = luminance * (1.0f - x - y) / y;
-    return vec3(3.2406f * X - 1.5372f * luminance - 0.4986f * Z,
-                -0.9689f * X + 1.8758f * luminance + 0.0415f * Z,
-                0.0557f * X - 0.2040f * luminance + 1.0570f * Z);
+float X = luminance * x / y;
+float Z = luminance * (1.0f - x - y) / y;
+return vec3(3.2406f * X - 1.5372f * luminance - 0.4986f * Z,
+-0.9689f * X + 1.8758f * luminance + 0.0415f * Z,
+0.0557f * X - 0.2040f * luminance + 1.0570f * Z);
 }
 vec3 sky_radiance(daylight_sky sky, vec3 to) {
-    float up = max(to.y, 0.01f);
-    float flat_length = sqrt(max(1.0f - up * up, 0.0f) /
-                             max(to.x * to.x + to.z * to.z, 1e-12f));
-    float cos_gamma = to.x * flat_length * sky.to_sun.x + up * sky.to_sun.y +
-                      to.z * flat_length * sky.to_sun.z;
-    float gamma = arccos_shared(cos_gamma);
-    float luminance = sky.zenith.x * perez(sky.a.x, sky.b.x, sky.c.x, sky.d.x, sky.e.x, up, gamma);
-    float x = sky.zenith.y * perez(sky.a.y, sky.b.y, sky.c.y, sky.d.y, sky.e.y, up, gamma);
-    float y = sky.zenith.z * perez(sky.a.z, sky.b.z, sky.c.z, sky.d.z, sky.e.z, up, gamma);
-    vec3 rgb = srgb_from_xyY(luminance, x, y);
-    return vec3(max(rgb.x, 0.0f), max(rgb.y, 0.0f), max(rgb.z, 0.0f));
+float up = max(to.y, 0.01f);
+float flat_length = sqrt(max(1.0f - up * up, 0.0f) /
+max(to.x * to.x + to.z * to.z, 1e-12f));
+float cos_gamma = to.x * flat_length * sky.to_sun.x + up * sky.to_sun.y +
+to.z * flat_length * sky.to_sun.z;
+float gamma = arccos_shared(cos_gamma);
+float luminance = sky.zenith.x * perez(sky.a.x, sky.b.x, sky.c.x, sky.d.x, sky.e.x, up, gamma);
+float x = sky.zenith.y * perez(sky.a.y, sky.b.y, sky.c.y, sky.d.y, sky.e.y, up, gamma);
+float y = sky.zenith.z * perez(sky.a.z, sky.b.z, sky.c.z, sky.d.z, sky.e.z, up, gamma);
+vec3 rgb = srgb_from_xyY(luminance, x, y);
+return vec3(max(rgb.x, 0.0f), max(rgb.y, 0.0f), max(rgb.z, 0.0f));
 }
 float hash_unit(uint x, uint y, uint z) {
-    uint h = x * 73856093u ^ y * 19349663u ^ z * 83492791u;
-    h = h ^ (h >> 16u);
-    h = h * 2246822519u;
-    h = h ^ (h >> 13u);
-    h = h * 3266489917u;
-    h = h ^ (h >> 16u);
-    return float(h >> 8u) * (1.0f / 16777216.0f);
+uint h = x * 73856093u ^ y * 19349663u ^ z * 83492791u;
+h = h ^ (h >> 16u);
+h = h * 2246822519u;
+h = h ^ (h >> 13u);
+h = h * 3266489917u;
+h = h ^ (h >> 16u);
+return float(h >> 8u) * (1.0f / 16777216.0f);
 }
 float value_noise(float x, float y, float z, uint period) {
-    float fx = floor(x);
-    float fy = floor(y);
-    float fz = floor(z);
-    float tx = x - fx;
-    float ty = y - fy;
-    float tz = z - fz;
-    tx = tx * tx * (3.0f - 2.0f * tx);
-    ty = ty * ty * (3.0f - 2.0f * ty);
-    tz = tz * tz * (3.0f - 2.0f * tz);
-    uint x0 = uint(int(fx) + 1048576) % period;
-    uint x1 = (x0 + 1u) % period;
-    uint y0 = uint(int(fy) + 1048576);
-    uint z0 = uint(int(fz) + 1048576);
-    float n00 = mix(hash_unit(x0, y0, z0), hash_unit(x1, y0, z0), tx);
-    float n10 = mix(hash_unit(x0, y0 + 1u, z0), hash_unit(x1, y0 + 1u, z0), tx);
-    float n01 = mix(hash_unit(x0, y0, z0 + 1u), hash_unit(x1, y0, z0 + 1u), tx);
-    float n11 = mix(hash_unit(x0, y0 + 1u, z0 + 1u), hash_unit(x1, y0 + 1u, z0 + 1u), tx);
-    return mix(mix(n00, n10, ty), mix(n01, n11, ty), tz);
+float fx = floor(x);
+float fy = floor(y);
+float fz = floor(z);
+float tx = x - fx;
+float ty = y - fy;
+float tz = z - fz;
+tx = tx * tx * (3.0f - 2.0f * tx);
+ty = ty * ty * (3.0f - 2.0f * ty);
+tz = tz * tz * (3.0f - 2.0f * tz);
+uint x0 = uint(int(fx) + 1048576) % period;
+uint x1 = (x0 + 1u) % period;
+uint y0 = uint(int(fy) + 1048576);
+uint z0 = uint(int(fz) + 1048576);
+float n00 = mix(hash_unit(x0, y0, z0), hash_unit(x1, y0, z0), tx);
+float n10 = mix(hash_unit(x0, y0 + 1u, z0), hash_unit(x1, y0 + 1u, z0), tx);
+float n01 = mix(hash_unit(x0, y0, z0 + 1u), hash_unit(x1, y0, z0 + 1u), tx);
+float n11 = mix(hash_unit(x0, y0 + 1u, z0 + 1u), hash_unit(x1, y0 + 1u, z0 + 1u), tx);
+return mix(mix(n00, n10, ty), mix(n01, n11, ty), tz);
 }
 vec3 ambient_light(vec4 h0, vec4 h1, vec4 h2, vec4 h3, vec3 n) {
-    return vec3(max(h0.x + h1.x * n.x + h2.x * n.y + h3.x * n.z, 0.0f),
-                max(h0.y + h1.y * n.x + h2.y * n.y + h3.y * n.z, 0.0f),
-                max(h0.z + h1.z * n.x + h2.z * n.y + h3.z * n.z, 0.0f));
+return vec3(max(h0.x + h1.x * n.x + h2.x * n.y + h3.x * n.z, 0.0f),
+max(h0.y + h1.y * n.x + h2.y * n.y + h3.y * n.z, 0.0f),
+max(h0.z + h1.z * n.x + h2.z * n.y + h3.z * n.z, 0.0f));
 }
 vec3 lit(vec3 albedo, vec3 n, daylight_sky sky, float sun, vec3 ambient) {
-    float facing = max(n.x * sky.to_sun.x + n.y * sky.to_sun.y + n.z * sky.to_sun.z, 0.0f) * sun;
-    return vec3(albedo.x * (ambient.x + sky.sunlight.x * facing),
-                albedo.y * (ambient.y + sky.sunlight.y * facing),
-                albedo.z * (ambient.z + sky.sunlight.z * facing));
+float facing = max(n.x * sky.to_sun.x + n.y * sky.to_sun.y + n.z * sky.to_sun.z, 0.0f) * sun;
+return vec3(albedo.x * (ambient.x + sky.sunlight.x * facing),
+albedo.y * (ambient.y + sky.sunlight.y * facing),
+albedo.z * (ambient.z + sky.sunlight.z * facing));
 }
 float bark_height(float u, float v, uint cells) {
-    float around = u * float(cells);
-    float warp = value_noise(around * 0.5f, v * 3.0f, 7.0f, max(cells / 2u, 1u));
-    float furrow = value_noise(around + 2.0f * warp, v * 6.0f, 0.0f, cells);
-    float fine = value_noise(around * 3.0f, v * 24.0f, 3.0f, cells * 3u);
-    return 0.7f * furrow + 0.3f * fine;
+float around = u * float(cells);
+float warp = value_noise(around * 0.5f, v * 3.0f, 7.0f, max(cells / 2u, 1u));
+float furrow = value_noise(around + 2.0f * warp, v * 6.0f, 0.0f, cells);
+float fine = value_noise(around * 3.0f, v * 24.0f, 3.0f, cells * 3u);
+return 0.7f * furrow + 0.3f * fine;
 }
 vec3 bark_albedo(float height) {
-    return vec3(mix(0.10f, 0.34f, height), mix(0.075f, 0.27f, height), mix(0.055f, 0.20f, height));
+return vec3(mix(0.10f, 0.34f, height), mix(0.075f, 0.27f, height), mix(0.055f, 0.20f, height));
 }
 vec3 grass_albedo(float x, float z) {
-    float wide = value_noise(x * 0.13f, z * 0.13f, 1.0f, 2097152u);
-    float middle = value_noise(x * 0.9f, z * 0.9f, 2.0f, 2097152u);
-    float fine = value_noise(x * 9.0f, z * 9.0f, 5.0f, 2097152u);
-    float straw = clamp(wide * 1.3f - 0.35f + 0.3f * middle, 0.0f, 1.0f);
-    float shade = 0.55f + 0.55f * fine + 0.25f * middle;
-    return vec3(mix(0.075f, 0.17f, straw) * shade, mix(0.105f, 0.155f, straw) * shade,
-                mix(0.030f, 0.065f, straw) * shade);
+float wide = value_noise(x * 0.13f, z * 0.13f, 1.0f, 2097152u);
+float middle = value_noise(x * 0.9f, z * 0.9f, 2.0f, 2097152u);
+float fine = value_noise(x * 9.0f, z * 9.0f, 5.0f, 2097152u);
+float straw = clamp(wide * 1.3f - 0.35f + 0.3f * middle, 0.0f, 1.0f);
+float shade = 0.55f + 0.55f * fine + 0.25f * middle;
+return vec3(mix(0.075f, 0.17f, straw) * shade, mix(0.105f, 0.155f, straw) * shade,
+mix(0.030f, 0.065f, straw) * shade);
 }
 float haze(float distance) {
-    return 1.0f - exp_shared(-min(distance, 30000.0f) * (1.0f / 2500.0f));
+return 1.0f - exp_shared(-min(distance, 30000.0f) * (1.0f / 2500.0f));
 }
 float srgb_encode(float x) {
-    float c = clamp(x, 0.0f, 1.0f);
-    return c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 0.41666667f) - 0.055f;
+float c = clamp(x, 0.0f, 1.0f);
+return c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 0.41666667f) - 0.055f;
 }
 float display(float x) {
-    return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
+return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
 }
 struct scene_record {
-    mat4 to_clip;
-    mat4 from_clip;
-    mat4 to_shadow;
-    vec4 camera;
-    vec4 shadow;
-    daylight_sky sky;
-    vec4 ambient[4];
+mat4 to_clip;
+mat4 from_clip;
+mat4 to_shadow;
+vec4 camera;
+vec4 shadow;
+daylight_sky sky;
+vec4 ambient[4];
 };
 #ifdef SKYBARK_FRAGMENT_STAGE
 #ifdef KERNEL_IMAGES
 float sun_at(scene_record scene, vec3 position, vec3 normal) {
-    vec3 raised = position + normal * (scene.shadow.x * scene.shadow.z);
-    vec4 p = scene.to_shadow * vec4(raised, 1.0);
-    vec2 texel = vec2(p.x * 0.5 + 0.5, 0.5 - p.y * 0.5) / scene.shadow.y - 0.5;
-    ivec2 size = textureSize(kernel_images[0], 0);
-    vec2 corner = floor(texel);
-    vec2 part = texel - corner;
-    float lit_texels = 0.0;
-    for (int y = -1; y <= 2; ++y) {
-        for (int x = -1; x <= 2; ++x) {
-            ivec2 at = ivec2(corner) + ivec2(x, y);
-            float wx = x == -1 ? 1.0 - part.x : (x == 2 ? part.x : 1.0);
-            float wy = y == -1 ? 1.0 - part.y : (y == 2 ? part.y : 1.0);
-            bool inside = at.x >= 0 && at.y >= 0 && at.x < size.x && at.y < size.y;
-            float depth = inside ? texelFetch(kernel_images[0], at, 0).r : 1.0;
-            lit_texels += min(p.z, 1.0) <= depth ? wx * wy : 0.0;
-        }
-    }
-    return lit_texels / 9.0;
+vec3 raised = position + normal * (scene.shadow.x * scene.shadow.z);
+vec4 p = scene.to_shadow * vec4(raised, 1.0);
+vec2 texel = vec2(p.x * 0.5 + 0.5, 0.5 - p.y * 0.5) / scene.shadow.y - 0.5;
+ivec2 size = textureSize(kernel_images[0], 0);
+vec2 corner = floor(texel);
+vec2 part = texel - corner;
+float lit_texels = 0.0;
+for (int y = -1; y <= 2; ++y) {
+for (int x = -1; x <= 2; ++x) {
+ivec2 at = ivec2(corner) + ivec2(x, y);
+float wx = x == -1 ? 1.0 - part.x : (x == 2 ? part.x : 1.0);
+float wy = y == -1 ? 1.0 - part.y : (y == 2 ? part.y : 1.0);
+bool inside = at.x >= 0 && at.y >= 0 && at.x < size.x && at.y < size.y;
+float depth = inside ? texelFetch(kernel_images[0], at, 0).r : 1.0;
+lit_texels += min(p.z, 1.0) <= depth ? wx * wy : 0.0;
+}
+}
+return lit_texels / 9.0;
 }
 #endif
 #endif
@@ -639,23 +639,23 @@ layout(std430, binding = 0) readonly buffer vertices_buffer { vec4 vertices[]; }
 layout(std430, binding = 1) readonly buffer scene_buffer { scene_record scene; };
 #ifdef SKYBARK_VERTEX_STAGE
 vec4 kernel_vertex(uint index) {
-    vec4 position = vertices[3u * index];
-    varying_out[0] = vec4(position.w, vertices[3u * index + 1u].w, 0.0, 0.0);
-    return scene.to_shadow * vec4(position.xyz, 1.0);
+vec4 position = vertices[3u * index];
+varying_out[0] = vec4(position.w, vertices[3u * index + 1u].w, 0.0, 0.0);
+return scene.to_shadow * vec4(position.xyz, 1.0);
 }
 #endif
 #ifdef SKYBARK_FRAGMENT_STAGE
 bool kernel_fragment(vec2 pixel, bool front) {
-    color_out = vec4(0.0);
-    return textureLod(kernel_images[0], varying_in[0].xy, 0.0).w >= 0.5;
+color_out = vec4(0.0);
+return textureLod(kernel_images[0], varying_in[0].xy, 0.0).w >= 0.5;
 }
 #endif
 void main() {
-    if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
-        discard;
-    }
+if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
+discard;
 }
-)glsl";
+}
+)glsl", 9221};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 baf2ff9ffeaae25eb936943ffc8cf72b0b07e87abaa66ab384d91112385bc7c3
+// sha256 2baa127fa11e2b492cf3c5cabdb94a6c234ad0a75942d299833897a4662e0226
 #pragma once
 
 #include <skybark/kernels/grid_impulse.hpp>
@@ -10,112 +10,112 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::grid_impulse> {
-    static constexpr std::string_view voxels_comp = R"glsl(#version 450
+    static constexpr std::string_view voxels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 8, local_size_y = 8) in;
 struct surface_vertex {
-    vec3 position;
-    float u;
-    vec3 normal;
-    float v;
-    vec4 tangent;
+vec3 position;
+float u;
+vec3 normal;
+float v;
+vec4 tangent;
 };
 struct branch_end {
-    vec3 position;
-    float radius;
-    vec4 orientation;
-    float path;
-    float slope;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+vec4 orientation;
+float path;
+float slope;
+float reserved0;
+float reserved1;
 };
 struct branch_segment {
-    uint start;
-    uint end;
-    uint caps;
-    uint reserved;
+uint start;
+uint end;
+uint caps;
+uint reserved;
 };
 struct segment_pose {
-    vec4 rotation;
-    vec3 base;
-    float reserved0;
-    vec3 shift;
-    float reserved1;
+vec4 rotation;
+vec3 base;
+float reserved0;
+vec3 shift;
+float reserved1;
 };
 struct end_carrier {
-    uint moved_by;
-    uint turned_by;
-    uint and_by;
-    uint reserved;
+uint moved_by;
+uint turned_by;
+uint and_by;
+uint reserved;
 };
 struct leaf {
-    vec3 position;
-    float width;
-    vec4 orientation;
-    float length;
-    uint carrier;
-    uint seed;
-    float fold;
+vec3 position;
+float width;
+vec4 orientation;
+float length;
+uint carrier;
+uint seed;
+float fold;
 };
 struct segment_load {
-    vec3 force;
-    float drag;
+vec3 force;
+float drag;
 };
 struct cloud_particle {
-    vec3 position;
-    float radius;
-    float optical_depth;
-    float albedo;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+float optical_depth;
+float albedo;
+float reserved0;
+float reserved1;
 };
 struct light_grid {
-    vec4 anchor;
-    vec4 row_x;
-    vec4 row_y;
-    vec4 row_z;
-    vec4 voxel;
+vec4 anchor;
+vec4 row_x;
+vec4 row_y;
+vec4 row_z;
+vec4 voxel;
 };
 struct gather_triangle {
-    vec3 a;
-    uint material;
-    vec3 b;
-    uint alpha;
-    vec3 c;
-    uint reserved;
+vec3 a;
+uint material;
+vec3 b;
+uint alpha;
+vec3 c;
+uint reserved;
 };
 struct gather_material {
-    vec3 diffuse;
-    uint two_sided;
-    vec3 emission;
-    float reserved0;
-    vec3 transmission;
-    float reserved1;
+vec3 diffuse;
+uint two_sided;
+vec3 emission;
+float reserved0;
+vec3 transmission;
+float reserved1;
 };
 struct gather_sample {
-    vec3 position;
-    float reserved0;
-    vec3 normal;
-    float reserved1;
+vec3 position;
+float reserved0;
+vec3 normal;
+float reserved1;
 };
 struct gather_hit {
-    float distance;
-    uint surface;
-    float u;
-    float v;
+float distance;
+uint surface;
+float u;
+float v;
 };
 struct ray_bundle {
-    vec4 centre;
-    vec4 right;
-    vec4 up;
-    vec4 direction;
+vec4 centre;
+vec4 right;
+vec4 up;
+vec4 direction;
 };
 struct patch_table {
-    uint front;
-    uint back;
-    uint rows;
-    uint reserved;
+uint front;
+uint back;
+uint rows;
+uint reserved;
 };
 #define KERNEL_PARAMETERS light_grid grid; vec4 low; vec4 inverse_size;
 #define KERNEL_VOLUMES 1
@@ -135,15 +135,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -167,136 +167,136 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-    float within = min(x, 87.0f);
-    float halvings = floor(within * 1.44269504f + 0.5f);
-    float r = halvings * 0.693145752f - within;
-    r = r + halvings * 1.42860677e-6f;
-    float p = 1.0f + r * (1.0f / 7.0f);
-    p = 1.0f + r * (1.0f / 6.0f) * p;
-    p = 1.0f + r * (1.0f / 5.0f) * p;
-    p = 1.0f + r * (1.0f / 4.0f) * p;
-    p = 1.0f + r * (1.0f / 3.0f) * p;
-    p = 1.0f + r * (1.0f / 2.0f) * p;
-    p = 1.0f + r * p;
-    int exponent = 127 - int(halvings);
-    return x < 87.0f ? p * intBitsToFloat(exponent * 8388608) : 0.0f;
+float within = min(x, 87.0f);
+float halvings = floor(within * 1.44269504f + 0.5f);
+float r = halvings * 0.693145752f - within;
+r = r + halvings * 1.42860677e-6f;
+float p = 1.0f + r * (1.0f / 7.0f);
+p = 1.0f + r * (1.0f / 6.0f) * p;
+p = 1.0f + r * (1.0f / 5.0f) * p;
+p = 1.0f + r * (1.0f / 4.0f) * p;
+p = 1.0f + r * (1.0f / 3.0f) * p;
+p = 1.0f + r * (1.0f / 2.0f) * p;
+p = 1.0f + r * p;
+int exponent = 127 - int(halvings);
+return x < 87.0f ? p * intBitsToFloat(exponent * 8388608) : 0.0f;
 }
 float one_minus_exp(float x)
 {
-    float p = 1.0f - x * (1.0f / 9.0f);
-    p = 1.0f - x * (1.0f / 8.0f) * p;
-    p = 1.0f - x * (1.0f / 7.0f) * p;
-    p = 1.0f - x * (1.0f / 6.0f) * p;
-    p = 1.0f - x * (1.0f / 5.0f) * p;
-    p = 1.0f - x * (1.0f / 4.0f) * p;
-    p = 1.0f - x * (1.0f / 3.0f) * p;
-    p = 1.0f - x * (1.0f / 2.0f) * p;
-    return x < 0.5f ? x * p : 1.0f - exp_minus(x);
+float p = 1.0f - x * (1.0f / 9.0f);
+p = 1.0f - x * (1.0f / 8.0f) * p;
+p = 1.0f - x * (1.0f / 7.0f) * p;
+p = 1.0f - x * (1.0f / 6.0f) * p;
+p = 1.0f - x * (1.0f / 5.0f) * p;
+p = 1.0f - x * (1.0f / 4.0f) * p;
+p = 1.0f - x * (1.0f / 3.0f) * p;
+p = 1.0f - x * (1.0f / 2.0f) * p;
+return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
 float log_of_sum(float sum, float less_one)
 {
-    float twos = 0.0f;
-    float less = less_one;
-    if (less_one < -0.25f || less_one > 0.4f) {
-        int bits = floatBitsToInt(max(sum, 1.2e-38f));
-        int power = (bits - 0x3f3504f3) >> 23;
-        less = intBitsToFloat(bits - power * 8388608) - 1.0f;
-        twos = float(power);
-    }
-    float s = less / (2.0f + less);
-    float s2 = s * s;
-    float p = s2 * (1.0f / 11.0f) + 1.0f / 9.0f;
-    p = s2 * p + 1.0f / 7.0f;
-    p = s2 * p + 1.0f / 5.0f;
-    p = s2 * p + 1.0f / 3.0f;
-    p = s2 * p + 1.0f;
-    return 2.0f * s * p + twos * 0.693147181f;
+float twos = 0.0f;
+float less = less_one;
+if (less_one < -0.25f || less_one > 0.4f) {
+int bits = floatBitsToInt(max(sum, 1.2e-38f));
+int power = (bits - 0x3f3504f3) >> 23;
+less = intBitsToFloat(bits - power * 8388608) - 1.0f;
+twos = float(power);
+}
+float s = less / (2.0f + less);
+float s2 = s * s;
+float p = s2 * (1.0f / 11.0f) + 1.0f / 9.0f;
+p = s2 * p + 1.0f / 7.0f;
+p = s2 * p + 1.0f / 5.0f;
+p = s2 * p + 1.0f / 3.0f;
+p = s2 * p + 1.0f;
+return 2.0f * s * p + twos * 0.693147181f;
 }
 float gaussian_above(float u)
 {
-    float x = abs(u) * 0.707106781f;
-    float t = 1.0f / (1.0f + 0.3275911f * x);
-    float p = 1.061405429f * t - 1.453152027f;
-    p = p * t + 1.421413741f;
-    p = p * t - 0.284496736f;
-    p = p * t + 0.254829592f;
-    float tail = 0.5f * (p * t * exp_minus(x * x));
-    return u < 0.0f ? 1.0f - tail : tail;
+float x = abs(u) * 0.707106781f;
+float t = 1.0f / (1.0f + 0.3275911f * x);
+float p = 1.061405429f * t - 1.453152027f;
+p = p * t + 1.421413741f;
+p = p * t - 0.284496736f;
+p = p * t + 0.254829592f;
+float tail = 0.5f * (p * t * exp_minus(x * x));
+return u < 0.0f ? 1.0f - tail : tail;
 }
 vec3 cells_of(light_grid grid, vec3 place)
 {
-    float px = place.x - grid.anchor.x;
-    float py = place.y - grid.anchor.y;
-    float pz = place.z - grid.anchor.z;
-    return vec3(grid.row_x.x * px + grid.row_x.y * py + grid.row_x.z * pz + grid.row_x.w,
-                grid.row_y.x * px + grid.row_y.y * py + grid.row_y.z * pz + grid.row_y.w,
-                grid.row_z.x * px + grid.row_z.y * py + grid.row_z.z * pz + grid.row_z.w);
+float px = place.x - grid.anchor.x;
+float py = place.y - grid.anchor.y;
+float pz = place.z - grid.anchor.z;
+return vec3(grid.row_x.x * px + grid.row_x.y * py + grid.row_x.z * pz + grid.row_x.w,
+grid.row_y.x * px + grid.row_y.y * py + grid.row_y.z * pz + grid.row_y.w,
+grid.row_z.x * px + grid.row_z.y * py + grid.row_z.z * pz + grid.row_z.w);
 }
 vec3 place_of(light_grid grid, vec3 cells)
 {
-    float x = (cells.x - grid.row_x.w) * grid.voxel.x * grid.voxel.x;
-    float y = (cells.y - grid.row_y.w) * grid.voxel.y * grid.voxel.y;
-    float z = (cells.z - grid.row_z.w) * grid.voxel.z * grid.voxel.z;
-    return vec3(
-        grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
-        grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
-        grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
+float x = (cells.x - grid.row_x.w) * grid.voxel.x * grid.voxel.x;
+float y = (cells.y - grid.row_y.w) * grid.voxel.y * grid.voxel.y;
+float z = (cells.z - grid.row_z.w) * grid.voxel.z * grid.voxel.z;
+return vec3(
+grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
+grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
+grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
-    float r2 = p.radius * p.radius;
-    if (d2 >= r2) {
-        return 0.0f;
-    }
-    float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    float on = p.albedo * forward * tau;
-    if (light == 2u && on > 0.0f) {
-        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
-    }
-    return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+float r2 = p.radius * p.radius;
+if (d2 >= r2) {
+return 0.0f;
+}
+float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float on = p.albedo * forward * tau;
+if (light == 2u && on > 0.0f) {
+return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
+}
+return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
 int top_row(float y, float radius)
 {
-    return int(ceil(y + radius - 0.5f)) - 1;
+return int(ceil(y + radius - 0.5f)) - 1;
 }
 int bottom_row(float y, float radius)
 {
-    return int(floor(y - radius - 0.5f));
+return int(floor(y - radius - 0.5f));
 }
 float part_above(uint profile, int row, float y, float radius, float sigmas)
 {
-    if (row > top_row(y, radius)) {
-        return 0.0f;
-    }
-    if (profile == 0u || row <= bottom_row(y, radius)) {
-        return 1.0f;
-    }
-    return gaussian_above((float(row) + 0.5f - y) / radius * sigmas);
+if (row > top_row(y, radius)) {
+return 0.0f;
+}
+if (profile == 0u || row <= bottom_row(y, radius)) {
+return 1.0f;
+}
+return gaussian_above((float(row) + 0.5f - y) / radius * sigmas);
 }
 int quanta(float amount)
 {
-    return int(floor(amount + 0.5f));
+return int(floor(amount + 0.5f));
 }
 void kernel_voxel(ivec3 at) {
-    int samples = int(inverse_size.w);
-    float sum = 0.0;
-    for (int k = 0; k < samples * samples * samples; ++k) {
-        vec3 part = vec3(float(k % samples), float(k / samples % samples),
-                         float(k / (samples * samples)));
-        vec3 cells = vec3(at) + (part + vec3(0.5)) / float(samples);
-        vec3 place = (place_of(grid, cells) - low.xyz) * inverse_size.xyz;
-        bool inside = all(greaterThanEqual(place, vec3(0.0))) && all(lessThanEqual(place, vec3(1.0)));
-        sum += inside ? textureLod(kernel_volumes[0], place, 0.0).x : 0.0;
-    }
-    imageStore(kernel_targets[0], at,
-               vec4(sum * low.w * grid.voxel.y / float(samples * samples * samples)));
+int samples = int(inverse_size.w);
+float sum = 0.0;
+for (int k = 0; k < samples * samples * samples; ++k) {
+vec3 part = vec3(float(k % samples), float(k / samples % samples),
+float(k / (samples * samples)));
+vec3 cells = vec3(at) + (part + vec3(0.5)) / float(samples);
+vec3 place = (place_of(grid, cells) - low.xyz) * inverse_size.xyz;
+bool inside = all(greaterThanEqual(place, vec3(0.0))) && all(lessThanEqual(place, vec3(1.0)));
+sum += inside ? textureLod(kernel_volumes[0], place, 0.0).x : 0.0;
+}
+imageStore(kernel_targets[0], at,
+vec4(sum * low.w * grid.voxel.y / float(samples * samples * samples)));
 }
 void main() {
-    if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
-        kernel_voxel(ivec3(gl_GlobalInvocationID));
-    }
+if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
+kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
-)glsl";
+}
+)glsl", 7324};
 };
 
 } // namespace skybark::opengl

@@ -1,14 +1,13 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 2ef806f7be0b5fe3ec36ca9b69d0dcdfaf877dade381dc87a8e4bece9fa77354
+// sha256 447971e10c440c78d8095f3b3e54ea0ba9b7541627b0f98d70969f6f3d214a67
 #pragma once
 
-#include <cstdint>
 #include <string_view>
 
 namespace skybark::opengl {
 
-inline constexpr std::string_view peeled_comp = R"glsl(#version 450
+inline constexpr std::string_view peeled_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 layout(local_size_x = 256) in;
 #ifdef SKYBARK_VULKAN
@@ -26,15 +25,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -62,27 +61,27 @@ layout(std430, binding = 9) writeonly buffer triangles_buffer { uint triangles[]
 layout(std430, binding = 10) buffer count_buffer { uint count[]; };
 shared uint drawn;
 void main() {
-    uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 256u +
-             gl_LocalInvocationID.x;
-    if (gl_LocalInvocationID.x == 0u) {
-        drawn = 0u;
-    }
-    barrier();
-    if (i < skybark_header.y) {
-        uvec2 fragment =
-            texelFetch(raster, ivec2(i % skybark_header.x, i / skybark_header.x), 0).xy;
-        triangles[i] = fragment.x;
-        depths[i] = fragment.y;
-        if (fragment.y != 0u) {
-            atomicAdd(drawn, 1u);
-        }
-    }
-    barrier();
-    if (gl_LocalInvocationID.x == 0u && drawn != 0u) {
-        atomicAdd(count[0], drawn);
-        atomicAdd(count[1], drawn);
-    }
+uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 256u +
+gl_LocalInvocationID.x;
+if (gl_LocalInvocationID.x == 0u) {
+drawn = 0u;
 }
-)glsl";
+barrier();
+if (i < skybark_header.y) {
+uvec2 fragment =
+texelFetch(raster, ivec2(i % skybark_header.x, i / skybark_header.x), 0).xy;
+triangles[i] = fragment.x;
+depths[i] = fragment.y;
+if (fragment.y != 0u) {
+atomicAdd(drawn, 1u);
+}
+}
+barrier();
+if (gl_LocalInvocationID.x == 0u && drawn != 0u) {
+atomicAdd(count[0], drawn);
+atomicAdd(count[1], drawn);
+}
+}
+)glsl", 2357};
 
 } // namespace skybark::opengl

@@ -1,118 +1,117 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 398ab4e4cc000161ad7eeaf3b65d750b665098243d43666c19980f1e612ea9ed
+// sha256 e47df125fe30d9caefd79e597f2ce448ffdf9221d0aebbaf97704accad6c2498
 #pragma once
 
-#include <cstdint>
 #include <string_view>
 
 namespace skybark::opengl {
 
-inline constexpr std::string_view resolve_count_comp = R"glsl(#version 450
+inline constexpr std::string_view resolve_count_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 layout(local_size_x = 64) in;
 struct surface_vertex {
-    vec3 position;
-    float u;
-    vec3 normal;
-    float v;
-    vec4 tangent;
+vec3 position;
+float u;
+vec3 normal;
+float v;
+vec4 tangent;
 };
 struct branch_end {
-    vec3 position;
-    float radius;
-    vec4 orientation;
-    float path;
-    float slope;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+vec4 orientation;
+float path;
+float slope;
+float reserved0;
+float reserved1;
 };
 struct branch_segment {
-    uint start;
-    uint end;
-    uint caps;
-    uint reserved;
+uint start;
+uint end;
+uint caps;
+uint reserved;
 };
 struct segment_pose {
-    vec4 rotation;
-    vec3 base;
-    float reserved0;
-    vec3 shift;
-    float reserved1;
+vec4 rotation;
+vec3 base;
+float reserved0;
+vec3 shift;
+float reserved1;
 };
 struct end_carrier {
-    uint moved_by;
-    uint turned_by;
-    uint and_by;
-    uint reserved;
+uint moved_by;
+uint turned_by;
+uint and_by;
+uint reserved;
 };
 struct leaf {
-    vec3 position;
-    float width;
-    vec4 orientation;
-    float length;
-    uint carrier;
-    uint seed;
-    float fold;
+vec3 position;
+float width;
+vec4 orientation;
+float length;
+uint carrier;
+uint seed;
+float fold;
 };
 struct segment_load {
-    vec3 force;
-    float drag;
+vec3 force;
+float drag;
 };
 struct cloud_particle {
-    vec3 position;
-    float radius;
-    float optical_depth;
-    float albedo;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+float optical_depth;
+float albedo;
+float reserved0;
+float reserved1;
 };
 struct light_grid {
-    vec4 anchor;
-    vec4 row_x;
-    vec4 row_y;
-    vec4 row_z;
-    vec4 voxel;
+vec4 anchor;
+vec4 row_x;
+vec4 row_y;
+vec4 row_z;
+vec4 voxel;
 };
 struct gather_triangle {
-    vec3 a;
-    uint material;
-    vec3 b;
-    uint alpha;
-    vec3 c;
-    uint reserved;
+vec3 a;
+uint material;
+vec3 b;
+uint alpha;
+vec3 c;
+uint reserved;
 };
 struct gather_material {
-    vec3 diffuse;
-    uint two_sided;
-    vec3 emission;
-    float reserved0;
-    vec3 transmission;
-    float reserved1;
+vec3 diffuse;
+uint two_sided;
+vec3 emission;
+float reserved0;
+vec3 transmission;
+float reserved1;
 };
 struct gather_sample {
-    vec3 position;
-    float reserved0;
-    vec3 normal;
-    float reserved1;
+vec3 position;
+float reserved0;
+vec3 normal;
+float reserved1;
 };
 struct gather_hit {
-    float distance;
-    uint surface;
-    float u;
-    float v;
+float distance;
+uint surface;
+float u;
+float v;
 };
 struct ray_bundle {
-    vec4 centre;
-    vec4 right;
-    vec4 up;
-    vec4 direction;
+vec4 centre;
+vec4 right;
+vec4 up;
+vec4 direction;
 };
 struct patch_table {
-    uint front;
-    uint back;
-    uint rows;
-    uint reserved;
+uint front;
+uint back;
+uint rows;
+uint reserved;
 };
 #define KERNEL_PARAMETERS ray_bundle bundle; uint first_triangle; uint triangle_count; uint side; float scale; uint first; uint last;
 #ifdef SKYBARK_VULKAN
@@ -130,15 +129,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -162,264 +161,264 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 vec3 across_bundle(ray_bundle bundle, vec3 place)
 {
-    precise float x = place.x - bundle.centre.x;
-    precise float y = place.y - bundle.centre.y;
-    precise float z = place.z - bundle.centre.z;
-    precise float right = (x * bundle.right.x + y * bundle.right.y) + z * bundle.right.z;
-    precise float up = (x * bundle.up.x + y * bundle.up.y) + z * bundle.up.z;
-    precise float along =
-        (x * bundle.direction.x + y * bundle.direction.y) + z * bundle.direction.z;
-    return vec3(right, up, along);
+precise float x = place.x - bundle.centre.x;
+precise float y = place.y - bundle.centre.y;
+precise float z = place.z - bundle.centre.z;
+precise float right = (x * bundle.right.x + y * bundle.right.y) + z * bundle.right.z;
+precise float up = (x * bundle.up.x + y * bundle.up.y) + z * bundle.up.z;
+precise float along =
+(x * bundle.direction.x + y * bundle.direction.y) + z * bundle.direction.z;
+return vec3(right, up, along);
 }
 vec3 ray_origin(ray_bundle bundle, gather_sample at)
 {
-    precise float x = at.position.x + bundle.right.w * at.normal.x;
-    precise float y = at.position.y + bundle.right.w * at.normal.y;
-    precise float z = at.position.z + bundle.right.w * at.normal.z;
-    return vec3(x, y, z);
+precise float x = at.position.x + bundle.right.w * at.normal.x;
+precise float y = at.position.y + bundle.right.w * at.normal.y;
+precise float z = at.position.z + bundle.right.w * at.normal.z;
+return vec3(x, y, z);
 }
 float side_of_bundle(ray_bundle bundle, vec3 normal)
 {
-    precise float along = (normal.x * bundle.direction.x + normal.y * bundle.direction.y) +
-                          normal.z * bundle.direction.z;
-    return along >= 0.0f ? 1.0f : -1.0f;
+precise float along = (normal.x * bundle.direction.x + normal.y * bundle.direction.y) +
+normal.z * bundle.direction.z;
+return along >= 0.0f ? 1.0f : -1.0f;
 }
 struct bundle_meeting {
-    float facing; // 0: the ray misses; > 0: the front looks along the bundle; < 0: against it
-    float depth;  // z where they meet
-    float u;      // barycentric weight of b
-    float v;      // … and of c
+float facing;
+float depth;
+float u;
+float v;
 };
 float meeting_slack(ray_bundle bundle)
 {
-    precise float slack = 1e-6f * bundle.centre.w;
-    return slack;
+precise float slack = 1e-6f * bundle.centre.w;
+return slack;
 }
 bool is_between(float a, float b, float c, float at, float slack)
 {
-    precise float low = min(a, min(b, c)) - slack;
-    precise float high = max(a, max(b, c)) + slack;
-    return at >= low && at <= high;
+precise float low = min(a, min(b, c)) - slack;
+precise float high = max(a, max(b, c)) + slack;
+return at >= low && at <= high;
 }
 bundle_meeting meet_triangle(vec3 a, vec3 b, vec3 c, float x, float y, float slack)
 {
-    precise float ax = a.x - x;
-    precise float ay = a.y - y;
-    precise float bx = b.x - x;
-    precise float by = b.y - y;
-    precise float cx = c.x - x;
-    precise float cy = c.y - y;
-    precise float e0 = bx * cy - by * cx;
-    precise float e1 = cx * ay - cy * ax;
-    precise float e2 = ax * by - ay * bx;
-    precise float area = (e0 + e1) + e2;
-    bool inside = (e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) ||
-                  (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f);
-    inside = inside && is_between(a.x, b.x, c.x, x, slack) && is_between(a.y, b.y, c.y, y, slack);
-    bundle_meeting found;
-    found.facing = 0.0f;
-    found.depth = 0.0f;
-    found.u = 0.0f;
-    found.v = 0.0f;
-    if (inside && area != 0.0f) {
-        precise float depth = ((e0 * a.z + e1 * b.z) + e2 * c.z) / area;
-        precise float u = e1 / area;
-        precise float v = e2 / area;
-        found.facing = area;
-        found.depth = depth;
-        found.u = u;
-        found.v = v;
-    }
-    return found;
+precise float ax = a.x - x;
+precise float ay = a.y - y;
+precise float bx = b.x - x;
+precise float by = b.y - y;
+precise float cx = c.x - x;
+precise float cy = c.y - y;
+precise float e0 = bx * cy - by * cx;
+precise float e1 = cx * ay - cy * ax;
+precise float e2 = ax * by - ay * bx;
+precise float area = (e0 + e1) + e2;
+bool inside = (e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) ||
+(e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f);
+inside = inside && is_between(a.x, b.x, c.x, x, slack) && is_between(a.y, b.y, c.y, y, slack);
+bundle_meeting found;
+found.facing = 0.0f;
+found.depth = 0.0f;
+found.u = 0.0f;
+found.v = 0.0f;
+if (inside && area != 0.0f) {
+precise float depth = ((e0 * a.z + e1 * b.z) + e2 * c.z) / area;
+precise float u = e1 / area;
+precise float v = e2 / area;
+found.facing = area;
+found.depth = depth;
+found.u = u;
+found.v = v;
+}
+return found;
 }
 float facing_of_triangle(vec3 a, vec3 b, vec3 c)
 {
-    precise float facing = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-    return facing;
+precise float facing = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+return facing;
 }
 float distance_along(bundle_meeting met, float side, float z, float lift)
 {
-    precise float distance = side * (met.depth - z);
-    bool front = side * met.facing < 0.0f;
-    float least = front ? -0.5f * lift : 0.5f * lift;
-    bool counts = met.facing != 0.0f && distance > least;
-    return counts ? max(distance, 0.0f) : -1.0f;
+precise float distance = side * (met.depth - z);
+bool front = side * met.facing < 0.0f;
+float least = front ? -0.5f * lift : 0.5f * lift;
+bool counts = met.facing != 0.0f && distance > least;
+return counts ? max(distance, 0.0f) : -1.0f;
 }
 float depth_of_layer(float z, float reach)
 {
-    precise float depth = 0.5f + 0.49f * (z / reach);
-    return depth;
+precise float depth = 0.5f + 0.49f * (z / reach);
+return depth;
 }
 float place_of_layer(float depth, float reach)
 {
-    precise float z = (depth - 0.5f) * (reach / 0.49f);
-    return z;
+precise float z = (depth - 0.5f) * (reach / 0.49f);
+return z;
 }
 float rise_in_pixel(ray_bundle bundle, vec3 normal, float apart)
 {
-    float right = abs((normal.x * bundle.right.x + normal.y * bundle.right.y) +
-                      normal.z * bundle.right.z);
-    float up = abs((normal.x * bundle.up.x + normal.y * bundle.up.y) + normal.z * bundle.up.z);
-    float along = abs((normal.x * bundle.direction.x + normal.y * bundle.direction.y) +
-                      normal.z * bundle.direction.z);
-    return apart * (right + up) / max(along, 0.001f);
+float right = abs((normal.x * bundle.right.x + normal.y * bundle.right.y) +
+normal.z * bundle.right.z);
+float up = abs((normal.x * bundle.up.x + normal.y * bundle.up.y) + normal.z * bundle.up.z);
+float along = abs((normal.x * bundle.direction.x + normal.y * bundle.direction.y) +
+normal.z * bundle.direction.z);
+return apart * (right + up) / max(along, 0.001f);
 }
 uint bundle_levels(uint cells)
 {
-    uint levels = 1u;
-    for (uint n = cells; n > 1u; n = n / 2u) {
-        levels = levels + 1u;
-    }
-    return levels;
+uint levels = 1u;
+for (uint n = cells; n > 1u; n = n / 2u) {
+levels = levels + 1u;
+}
+return levels;
 }
 uint first_cell(uint cells, uint level)
 {
-    uint first = 0u;
-    for (uint l = 0u; l < level; ++l) {
-        first = first + (cells >> l) * (cells >> l);
-    }
-    return first;
+uint first = 0u;
+for (uint l = 0u; l < level; ++l) {
+first = first + (cells >> l) * (cells >> l);
+}
+return first;
 }
 float bundle_cells(ray_bundle bundle, float across)
 {
-    precise float cells = (across + bundle.centre.w) * bundle.up.w;
-    return cells;
+precise float cells = (across + bundle.centre.w) * bundle.up.w;
+return cells;
 }
 int cell_within(float place, int count)
 {
-    return place >= 1.0f ? int(min(place, float(count) - 0.5f)) : 0;
+return place >= 1.0f ? int(min(place, float(count) - 0.5f)) : 0;
 }
 uint bundle_level(float extent, uint levels)
 {
-    uint level = 0u;
-    float widest = 1.99f;
-    while (level + 1u < levels && !(extent <= widest)) {
-        level = level + 1u;
-        widest = widest * 2.0f;
-    }
-    return level;
+uint level = 0u;
+float widest = 1.99f;
+while (level + 1u < levels && !(extent <= widest)) {
+level = level + 1u;
+widest = widest * 2.0f;
+}
+return level;
 }
 uint bundle_cell(ray_bundle bundle, vec3 a, vec3 b, vec3 c)
 {
-    uint cells = uint(bundle.direction.w);
-    float low_x = min(a.x, min(b.x, c.x));
-    float low_y = min(a.y, min(b.y, c.y));
-    float high_x = max(a.x, max(b.x, c.x));
-    float high_y = max(a.y, max(b.y, c.y));
-    float extent = max(high_x - low_x, high_y - low_y) * bundle.up.w;
-    uint level = bundle_level(extent, bundle_levels(cells));
-    int count = int(cells >> level);
-    float share = float(count) / float(cells);
-    int x = cell_within(bundle_cells(bundle, 0.5f * (low_x + high_x)) * share, count);
-    int y = cell_within(bundle_cells(bundle, 0.5f * (low_y + high_y)) * share, count);
-    return first_cell(cells, level) + uint(y * count + x);
+uint cells = uint(bundle.direction.w);
+float low_x = min(a.x, min(b.x, c.x));
+float low_y = min(a.y, min(b.y, c.y));
+float high_x = max(a.x, max(b.x, c.x));
+float high_y = max(a.y, max(b.y, c.y));
+float extent = max(high_x - low_x, high_y - low_y) * bundle.up.w;
+uint level = bundle_level(extent, bundle_levels(cells));
+int count = int(cells >> level);
+float share = float(count) / float(cells);
+int x = cell_within(bundle_cells(bundle, 0.5f * (low_x + high_x)) * share, count);
+int y = cell_within(bundle_cells(bundle, 0.5f * (low_y + high_y)) * share, count);
+return first_cell(cells, level) + uint(y * count + x);
 }
 uint patch_at(uint rows, float u, float v)
 {
-    int n = int(rows);
-    float x = u * float(n);
-    float y = v * float(n);
-    int j = cell_within(y, n);
-    int i = cell_within(x, n - j);
-    bool upper = i + j + 1 < n && (x - float(i)) + (y - float(j)) > 1.0f;
-    return uint(j * (2 * n - j) + 2 * i + (upper ? 1 : 0));
+int n = int(rows);
+float x = u * float(n);
+float y = v * float(n);
+int j = cell_within(y, n);
+int i = cell_within(x, n - j);
+bool upper = i + j + 1 < n && (x - float(i)) + (y - float(j)) > 1.0f;
+return uint(j * (2 * n - j) + 2 * i + (upper ? 1 : 0));
 }
 struct barycentric {
-    float u;
-    float v;
+float u;
+float v;
 };
 barycentric patch_middle(uint rows, uint number)
 {
-    int n = int(rows);
-    int m = int(number);
-    int left = n * n - m;
-    int k = int(ceil(sqrt(float(left))));
-    k = (k - 1) * (k - 1) >= left ? k - 1 : k;
-    k = k * k < left ? k + 1 : k;
-    int j = n - k;
-    int within = m - j * (2 * n - j);
-    float third = within % 2 == 1 ? 2.0f / 3.0f : 1.0f / 3.0f;
-    barycentric middle;
-    middle.u = (float(within / 2) + third) / float(n);
-    middle.v = (float(j) + third) / float(n);
-    return middle;
+int n = int(rows);
+int m = int(number);
+int left = n * n - m;
+int k = int(ceil(sqrt(float(left))));
+k = (k - 1) * (k - 1) >= left ? k - 1 : k;
+k = k * k < left ? k + 1 : k;
+int j = n - k;
+int within = m - j * (2 * n - j);
+float third = within % 2 == 1 ? 2.0f / 3.0f : 1.0f / 3.0f;
+barycentric middle;
+middle.u = (float(within / 2) + third) / float(n);
+middle.v = (float(j) + third) / float(n);
+return middle;
 }
 int grid_cell(float across) {
-    precise float place = (across + bundle.centre.w) * scale;
-    return cell_within(place, int(side));
+precise float place = (across + bundle.centre.w) * scale;
+return cell_within(place, int(side));
 }
 uint cell_number(ivec2 at, uint level) {
-    uint cells = side >> level;
-    uint before = (side * side - cells * cells) / 3u * 4u;
-    return before + uint(at.y >> level) * cells + uint(at.x >> level);
+uint cells = side >> level;
+uint before = (side * side - cells * cells) / 3u * 4u;
+return before + uint(at.y >> level) * cells + uint(at.x >> level);
 }
 struct cell_box {
-    ivec2 low; // of the finest grid
-    ivec2 high;
-    uint level;
-    bool beyond; // reaches out of the grids, whose outer cells hold what is there as well
+ivec2 low;
+ivec2 high;
+uint level;
+bool beyond;
 };
 cell_box cells_of(vec2 a, vec2 b, vec2 c) {
-    precise float slack = meeting_slack(bundle);
-    precise vec2 low = min(a, min(b, c)) - slack;
-    precise vec2 high = max(a, max(b, c)) + slack;
-    cell_box box;
-    box.low = ivec2(grid_cell(low.x), grid_cell(low.y));
-    box.high = ivec2(grid_cell(high.x), grid_cell(high.y));
-    box.beyond = !(min(low.x, low.y) > -bundle.centre.w && max(high.x, high.y) < bundle.centre.w);
-    box.level = 0u;
-    while (any(greaterThan((box.high >> box.level) - (box.low >> box.level), ivec2(4)))) {
-        box.level += 1u;
-    }
-    return box;
+precise float slack = meeting_slack(bundle);
+precise vec2 low = min(a, min(b, c)) - slack;
+precise vec2 high = max(a, max(b, c)) + slack;
+cell_box box;
+box.low = ivec2(grid_cell(low.x), grid_cell(low.y));
+box.high = ivec2(grid_cell(high.x), grid_cell(high.y));
+box.beyond = !(min(low.x, low.y) > -bundle.centre.w && max(high.x, high.y) < bundle.centre.w);
+box.level = 0u;
+while (any(greaterThan((box.high >> box.level) - (box.low >> box.level), ivec2(4)))) {
+box.level += 1u;
+}
+return box;
 }
 bool may_meet(cell_box box, ivec2 cell, vec2 a, vec2 b, vec2 c) {
-    float width = float(1u << box.level) / scale;
-    vec2 middle = (vec2(cell) + 0.5) * width - bundle.centre.w;
-    float half_width = 0.5 * width + 2.0 * meeting_slack(bundle);
-    vec2 p = a - middle;
-    vec2 q = b - middle;
-    vec2 r = c - middle;
-    vec2 far = max(abs(p), max(abs(q), abs(r))) + half_width;
-    float wrong = 2e-6 * (far.x * far.y);
-    vec3 edges = vec3(q.x * r.y - q.y * r.x, r.x * p.y - r.y * p.x, p.x * q.y - p.y * q.x);
-    vec2 pq = abs(q - p);
-    vec2 qr = abs(r - q);
-    vec2 rp = abs(p - r);
-    vec3 rises = half_width * vec3(qr.x + qr.y, rp.x + rp.y, pq.x + pq.y) + wrong;
-    return box.beyond || all(greaterThanEqual(edges + rises, vec3(0.0))) ||
-           all(lessThanEqual(edges - rises, vec3(0.0)));
+float width = float(1u << box.level) / scale;
+vec2 middle = (vec2(cell) + 0.5) * width - bundle.centre.w;
+float half_width = 0.5 * width + 2.0 * meeting_slack(bundle);
+vec2 p = a - middle;
+vec2 q = b - middle;
+vec2 r = c - middle;
+vec2 far = max(abs(p), max(abs(q), abs(r))) + half_width;
+float wrong = 2e-6 * (far.x * far.y);
+vec3 edges = vec3(q.x * r.y - q.y * r.x, r.x * p.y - r.y * p.x, p.x * q.y - p.y * q.x);
+vec2 pq = abs(q - p);
+vec2 qr = abs(r - q);
+vec2 rp = abs(p - r);
+vec3 rises = half_width * vec3(qr.x + qr.y, rp.x + rp.y, pq.x + pq.y) + wrong;
+return box.beyond || all(greaterThanEqual(edges + rises, vec3(0.0))) ||
+all(lessThanEqual(edges - rises, vec3(0.0)));
 }
 layout(std430, binding = 1) readonly buffer triangles_buffer { gather_triangle triangles[]; };
 layout(std430, binding = 4) buffer counts_buffer { uint counts[]; };
 layout(std430, binding = 5) buffer levels_buffer { uint levels[]; };
 layout(std430, binding = 6) writeonly buffer corners_buffer { vec4 corners[]; };
 void main() {
-    uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
-             gl_LocalInvocationID.x;
-    if (i >= triangle_count) {
-        return;
-    }
-    gather_triangle t = triangles[first_triangle + i];
-    vec3 a = across_bundle(bundle, t.a);
-    vec3 b = across_bundle(bundle, t.b);
-    vec3 c = across_bundle(bundle, t.c);
-    corners[3u * i] = vec4(a.xy, b.xy);
-    corners[3u * i + 1u] = vec4(c.xy, a.z, b.z);
-    corners[3u * i + 2u] = vec4(c.z, uintBitsToFloat(t.alpha), 0.0, 0.0);
-    cell_box box = cells_of(a.xy, b.xy, c.xy);
-    ivec2 step = ivec2(1 << box.level);
-    for (int y = box.low.y >> box.level; y <= box.high.y >> box.level; ++y) {
-        for (int x = box.low.x >> box.level; x <= box.high.x >> box.level; ++x) {
-            if (may_meet(box, ivec2(x, y), a.xy, b.xy, c.xy)) {
-                atomicAdd(counts[cell_number(ivec2(x, y) * step, box.level) + 1u], 1u);
-            }
-        }
-    }
-    if ((levels[0] >> box.level & 1u) == 0u) {
-        atomicOr(levels[0], 1u << box.level);
-    }
+uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
+gl_LocalInvocationID.x;
+if (i >= triangle_count) {
+return;
 }
-)glsl";
+gather_triangle t = triangles[first_triangle + i];
+vec3 a = across_bundle(bundle, t.a);
+vec3 b = across_bundle(bundle, t.b);
+vec3 c = across_bundle(bundle, t.c);
+corners[3u * i] = vec4(a.xy, b.xy);
+corners[3u * i + 1u] = vec4(c.xy, a.z, b.z);
+corners[3u * i + 2u] = vec4(c.z, uintBitsToFloat(t.alpha), 0.0, 0.0);
+cell_box box = cells_of(a.xy, b.xy, c.xy);
+ivec2 step = ivec2(1 << box.level);
+for (int y = box.low.y >> box.level; y <= box.high.y >> box.level; ++y) {
+for (int x = box.low.x >> box.level; x <= box.high.x >> box.level; ++x) {
+if (may_meet(box, ivec2(x, y), a.xy, b.xy, c.xy)) {
+atomicAdd(counts[cell_number(ivec2(x, y) * step, box.level) + 1u], 1u);
+}
+}
+}
+if ((levels[0] >> box.level & 1u) == 0u) {
+atomicOr(levels[0], 1u << box.level);
+}
+}
+)glsl", 11516};
 
 } // namespace skybark::opengl

@@ -1,14 +1,13 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0e9a6a2335898bb506db4adcbfd08f60994f79422c9e7fafece739f0fc4b3650
+// sha256 60335632bf73cefb9450067ad7402ee0760be027f3d41217d23375d4989f242f
 #pragma once
 
-#include <cstdint>
 #include <string_view>
 
 namespace skybark::opengl {
 
-inline constexpr std::string_view scan_comp = R"glsl(#version 450
+inline constexpr std::string_view scan_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 layout(local_size_x = 256) in;
 #ifdef SKYBARK_VULKAN
@@ -26,15 +25,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -62,40 +61,40 @@ layout(std430, binding = 10) writeonly buffer sums_buffer { uint sums[]; };
 const uint each = 16u;
 shared uint shared_sums[2][256];
 uint add(uint a, uint b) {
-    uint carry;
-    uint sum = uaddCarry(a, b, carry);
-    return carry != 0u ? 0xffffffffu : sum;
+uint carry;
+uint sum = uaddCarry(a, b, carry);
+return carry != 0u ? 0xffffffffu : sum;
 }
 void main() {
-    uint block = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    uint lane = gl_LocalInvocationID.x;
-    uint start = (block * 256u + lane) * each;
-    uint values[each];
-    uint sum = 0u;
-    for (uint j = 0u; j < each; ++j) {
-        values[j] = start + j < skybark_header.y ? values_in[start + j] : 0u;
-        sum = add(sum, values[j]);
-    }
-    shared_sums[0][lane] = sum;
-    barrier();
-    uint now = 0u;
-    for (uint step = 1u; step < 256u; step *= 2u) {
-        uint here = shared_sums[now][lane];
-        shared_sums[1u - now][lane] = lane >= step ? add(here, shared_sums[now][lane - step]) : here;
-        now = 1u - now;
-        barrier();
-    }
-    uint running = lane > 0u ? shared_sums[now][lane - 1u] : 0u;
-    for (uint j = 0u; j < each; ++j) {
-        if (start + j < skybark_header.y) {
-            values_out[start + j] = running;
-        }
-        running = add(running, values[j]);
-    }
-    if (lane == 255u && block * 4096u < max(skybark_header.y, 1u)) {
-        sums[block] = running;
-    }
+uint block = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+uint lane = gl_LocalInvocationID.x;
+uint start = (block * 256u + lane) * each;
+uint values[each];
+uint sum = 0u;
+for (uint j = 0u; j < each; ++j) {
+values[j] = start + j < skybark_header.y ? values_in[start + j] : 0u;
+sum = add(sum, values[j]);
 }
-)glsl";
+shared_sums[0][lane] = sum;
+barrier();
+uint now = 0u;
+for (uint step = 1u; step < 256u; step *= 2u) {
+uint here = shared_sums[now][lane];
+shared_sums[1u - now][lane] = lane >= step ? add(here, shared_sums[now][lane - step]) : here;
+now = 1u - now;
+barrier();
+}
+uint running = lane > 0u ? shared_sums[now][lane - 1u] : 0u;
+for (uint j = 0u; j < each; ++j) {
+if (start + j < skybark_header.y) {
+values_out[start + j] = running;
+}
+running = add(running, values[j]);
+}
+if (lane == 255u && block * 4096u < max(skybark_header.y, 1u)) {
+sums[block] = running;
+}
+}
+)glsl", 2812};
 
 } // namespace skybark::opengl

@@ -1,14 +1,13 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 4edd0cbb76b6d42302f735bc704cd90a00155f53232f4948dfc933af013538cd
+// sha256 ba818281bd02873d5495e8482f382cf3dba414e4bef1bd086d0daa49ca9fa303
 #pragma once
 
-#include <cstdint>
 #include <string_view>
 
 namespace skybark::opengl {
 
-inline constexpr std::string_view scan_add_comp = R"glsl(#version 450
+inline constexpr std::string_view scan_add_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 layout(local_size_x = 256) in;
 #ifdef SKYBARK_VULKAN
@@ -26,15 +25,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -60,14 +59,14 @@ layout(std430, binding = 8) writeonly buffer out_buffer { uint values_out[]; };
 layout(std430, binding = 9) readonly buffer in_buffer { uint values_in[]; };
 layout(std430, binding = 10) readonly buffer sums_buffer { uint sums[]; };
 void main() {
-    uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 256u +
-             gl_LocalInvocationID.x;
-    if (i < skybark_header.y) {
-        uint carry;
-        uint sum = uaddCarry(values_in[i], sums[i / 4096u], carry);
-        values_out[i] = carry != 0u ? 0xffffffffu : sum;
-    }
+uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 256u +
+gl_LocalInvocationID.x;
+if (i < skybark_header.y) {
+uint carry;
+uint sum = uaddCarry(values_in[i], sums[i / 4096u], carry);
+values_out[i] = carry != 0u ? 0xffffffffu : sum;
 }
-)glsl";
+}
+)glsl", 2018};
 
 } // namespace skybark::opengl

@@ -1,14 +1,13 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 abf9a76c052a067eba3b5d5d90b7e86b2af35b9806f1ef47765d1fb602ac1950
+// sha256 0ed1a1eef1a8c0d4eae076eea9fa3de52a7cb4ec0d0c2b1460b14d958c21e2d0
 #pragma once
 
-#include <cstdint>
 #include <string_view>
 
 namespace skybark::opengl {
 
-inline constexpr std::string_view scan_int32_float32_comp = R"glsl(#version 450
+inline constexpr std::string_view scan_int32_float32_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define NUMBER int
 #define FROM_FORMAT r32i
@@ -31,15 +30,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -65,56 +64,56 @@ layout(binding = SKYBARK_SUMS_BINDING, FROM_FORMAT) readonly uniform FROM_IMAGE 
 layout(binding = SKYBARK_TARGET_BINDING, INTO_FORMAT) writeonly uniform INTO_IMAGE into_volume;
 #ifdef INTO_FLOAT16
 float rounded(float value) {
-    uint bits = floatBitsToUint(value);
-    uint size = bits & 0x7fffffffu;
-    if (size >= 0x477ff000u) { // 65520: infinite, unless it is no number
-        size = size > 0x7f800000u ? size : 0x7f800000u;
-    } else if (size < 0x38800000u) { // 2^-14: subnormal, whole multiples of 2^-24
-        size = floatBitsToUint(roundEven(uintBitsToFloat(size) * 16777216.0) / 16777216.0);
-    } else {
-        size = (size + 0xfffu + ((size >> 13) & 1u)) & ~0x1fffu;
-    }
-    return uintBitsToFloat(size | (bits & 0x80000000u));
+uint bits = floatBitsToUint(value);
+uint size = bits & 0x7fffffffu;
+if (size >= 0x477ff000u) {
+size = size > 0x7f800000u ? size : 0x7f800000u;
+} else if (size < 0x38800000u) {
+size = floatBitsToUint(roundEven(uintBitsToFloat(size) * 16777216.0) / 16777216.0);
+} else {
+size = (size + 0xfffu + ((size >> 13) & 1u)) & ~0x1fffu;
+}
+return uintBitsToFloat(size | (bits & 0x80000000u));
 }
 #else
 float rounded(float value) { return value; }
 #endif
 #ifdef INTO_WHOLE_NUMBERS
 ivec4 shared_out(int before, int own) {
-    return ivec4(skybark_header.z == 2u ? before : before + own);
+return ivec4(skybark_header.z == 2u ? before : before + own);
 }
 #else
 vec4 shared_out(NUMBER before, NUMBER own) {
-    float sum = skybark_header.z == 0u   ? float(before + own)
-                : skybark_header.z == 1u ? float(before) + 0.5 * float(own)
-                                         : float(before);
-    return vec4(rounded(sum * uintBitsToFloat(skybark_header.w)));
+float sum = skybark_header.z == 0u   ? float(before + own)
+: skybark_header.z == 1u ? float(before) + 0.5 * float(own)
+: float(before);
+return vec4(rounded(sum * uintBitsToFloat(skybark_header.w)));
 }
 #endif
 void main() {
-    ivec3 size = imageSize(from_volume);
-    ivec2 column = ivec2(gl_GlobalInvocationID.xy);
-    uint axis = skybark_header.x;
-    ivec3 at = axis == 1u   ? ivec3(0, column)
-               : axis == 3u ? ivec3(column, 0)
-                            : ivec3(column.x, 0, column.y);
-    if (any(greaterThanEqual(at, size))) {
-        return;
-    }
-    ivec3 forward = axis == 1u ? ivec3(1, 0, 0) : axis == 3u ? ivec3(0, 0, 1) : ivec3(0, 1, 0);
-    int count = axis == 1u ? size.x : axis == 3u ? size.z : size.y;
-    if (skybark_header.y != 0u) {
-        at += forward * (count - 1);
-        forward = -forward;
-    }
-    NUMBER before = NUMBER(0);
-    for (int n = 0; n < count; ++n) {
-        NUMBER own = imageLoad(from_volume, at).x;
-        imageStore(into_volume, at, shared_out(before, own));
-        before = axis == 0u ? before : before + own;
-        at += forward;
-    }
+ivec3 size = imageSize(from_volume);
+ivec2 column = ivec2(gl_GlobalInvocationID.xy);
+uint axis = skybark_header.x;
+ivec3 at = axis == 1u   ? ivec3(0, column)
+: axis == 3u ? ivec3(column, 0)
+: ivec3(column.x, 0, column.y);
+if (any(greaterThanEqual(at, size))) {
+return;
 }
-)glsl";
+ivec3 forward = axis == 1u ? ivec3(1, 0, 0) : axis == 3u ? ivec3(0, 0, 1) : ivec3(0, 1, 0);
+int count = axis == 1u ? size.x : axis == 3u ? size.z : size.y;
+if (skybark_header.y != 0u) {
+at += forward * (count - 1);
+forward = -forward;
+}
+NUMBER before = NUMBER(0);
+for (int n = 0; n < count; ++n) {
+NUMBER own = imageLoad(from_volume, at).x;
+imageStore(into_volume, at, shared_out(before, own));
+before = axis == 0u ? before : before + own;
+at += forward;
+}
+}
+)glsl", 3453};
 
 } // namespace skybark::opengl

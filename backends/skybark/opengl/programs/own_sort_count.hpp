@@ -1,14 +1,13 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5a54c09ebe3cc4f9629c4802cc359dbac090ba09c9f5527ae56fbdb7341d6ad8
+// sha256 d23d292f29b2b011ece9155568059b1d84816335bad89f784f2a921c243ce573
 #pragma once
 
-#include <cstdint>
 #include <string_view>
 
 namespace skybark::opengl {
 
-inline constexpr std::string_view sort_count_comp = R"glsl(#version 450
+inline constexpr std::string_view sort_count_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 layout(local_size_x = 64) in;
 #ifdef SKYBARK_VULKAN
@@ -26,15 +25,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -58,8 +57,8 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
-    return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
-                                         : skybark_header.y;
+return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
+: skybark_header.y;
 }
 const uint lanes = 64u;
 const uint each = 16u;
@@ -70,32 +69,32 @@ uint block_of_group() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGr
 uint first_pair() { return (block_of_group() * lanes + gl_LocalInvocationID.x) * each; }
 uint end_of_pairs() { return min(first_pair() + each, skybark_elements()); }
 uint counter_of(uint key) {
-    return gl_LocalInvocationID.x * pitch + ((key >> skybark_header.x) & (digits - 1u));
+return gl_LocalInvocationID.x * pitch + ((key >> skybark_header.x) & (digits - 1u));
 }
 void clear_counters() {
-    for (uint digit = 0u; digit < digits; ++digit) {
-        counters[gl_LocalInvocationID.x * pitch + digit] = 0u;
-    }
+for (uint digit = 0u; digit < digits; ++digit) {
+counters[gl_LocalInvocationID.x * pitch + digit] = 0u;
+}
 }
 layout(std430, binding = 8) writeonly buffer counts_buffer { uint counts[]; };
 layout(std430, binding = 9) readonly buffer keys_buffer { uint keys[]; };
 void main() {
-    clear_counters();
-    uint end = end_of_pairs();
-    for (uint i = first_pair(); i < end; ++i) {
-        ++counters[counter_of(keys[i])];
-    }
-    barrier();
-    uint block = block_of_group();
-    uint digit = gl_LocalInvocationID.x;
-    if (digit < digits && block < skybark_header.z) {
-        uint sum = 0u;
-        for (uint lane = 0u; lane < lanes; ++lane) {
-            sum += counters[lane * pitch + digit];
-        }
-        counts[digit * skybark_header.z + block] = sum;
-    }
+clear_counters();
+uint end = end_of_pairs();
+for (uint i = first_pair(); i < end; ++i) {
+++counters[counter_of(keys[i])];
 }
-)glsl";
+barrier();
+uint block = block_of_group();
+uint digit = gl_LocalInvocationID.x;
+if (digit < digits && block < skybark_header.z) {
+uint sum = 0u;
+for (uint lane = 0u; lane < lanes; ++lane) {
+sum += counters[lane * pitch + digit];
+}
+counts[digit * skybark_header.z + block] = sum;
+}
+}
+)glsl", 2946};
 
 } // namespace skybark::opengl

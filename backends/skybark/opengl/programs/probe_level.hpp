@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 a1acf5cf587837fbc0c02e09556f1b060cdfe6d067a4e808b6791b8cf73dcb72
+// sha256 3e62554453d61ea1dbf505ce0fce3975b1a946dfd5420fc25f6a5e71493d1a62
 #pragma once
 
 #include <skybark/kernels/probe_level.hpp>
@@ -10,7 +10,7 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::probe_level> {
-    static constexpr std::string_view map_comp = R"glsl(#version 450
+    static constexpr std::string_view map_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 64) in;
@@ -29,15 +29,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -63,23 +63,23 @@ layout(std430, binding = 0) readonly buffer nodes_buffer { uvec2 nodes[]; };
 layout(std430, binding = 1) readonly buffer parents_buffer { uint parents[]; };
 layout(std430, binding = 2) writeonly buffer values_buffer { uint values[]; };
 void kernel_map(uint i) {
-    uvec2 node = nodes[i];
-    values[i] = node.x == i ? node.y : parents[node.x] * 3u + node.y;
+uvec2 node = nodes[i];
+values[i] = node.x == i ? node.y : parents[node.x] * 3u + node.y;
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
-    return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
-                                         : skybark_header.y;
+return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
+: skybark_header.y;
 }
 void main() {
-    uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
-             gl_LocalInvocationID.x;
-    if (i < skybark_elements()) {
-        kernel_map(skybark_header.x + i);
-    }
+uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
+gl_LocalInvocationID.x;
+if (i < skybark_elements()) {
+kernel_map(skybark_header.x + i);
 }
-)glsl";
-    static constexpr std::string_view levels_comp = R"glsl(#version 450
+}
+)glsl", 2305};
+    static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
 #define writeonly coherent writeonly
@@ -100,15 +100,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -134,21 +134,21 @@ layout(std430, binding = 0) readonly buffer nodes_buffer { uvec2 nodes[]; };
 layout(std430, binding = 1) readonly buffer parents_buffer { uint parents[]; };
 layout(std430, binding = 2) writeonly buffer values_buffer { uint values[]; };
 void kernel_map(uint i) {
-    uvec2 node = nodes[i];
-    values[i] = node.x == i ? node.y : parents[node.x] * 3u + node.y;
+uvec2 node = nodes[i];
+values[i] = node.x == i ? node.y : parents[node.x] * 3u + node.y;
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
 void main() {
-    for (uint r = 0u; r < skybark_header.y; ++r) {
-        uvec2 elements = skybark_ranges[skybark_header.x + r];
-        for (uint i = gl_LocalInvocationID.x; i < elements.y; i += 256u) {
-            kernel_map(elements.x + i);
-        }
-        memoryBarrierBuffer();
-        barrier();
-    }
+for (uint r = 0u; r < skybark_header.y; ++r) {
+uvec2 elements = skybark_ranges[skybark_header.x + r];
+for (uint i = gl_LocalInvocationID.x; i < elements.y; i += 256u) {
+kernel_map(elements.x + i);
 }
-)glsl";
+memoryBarrierBuffer();
+barrier();
+}
+}
+)glsl", 2320};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 3b0fa18b6dc760a5985cf31af5e4c02be2725454e69fe2b78863b58087c0ee1e
+// sha256 8a190ab8850b615b6194c2fbbe82ac2f393fb923af6b4b6a83db62b44a14699e
 #pragma once
 
 #include <skybark/kernels/probe_peel.hpp>
@@ -10,7 +10,7 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::probe_peel> {
-    static constexpr std::string_view peel_vert = R"glsl(#version 450
+    static constexpr std::string_view peel_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define KERNEL_PARAMETERS vec4 scale; vec4 shift;
 #ifdef SKYBARK_VULKAN
@@ -28,15 +28,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -60,19 +60,19 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 layout(std430, binding = 0) readonly buffer corners_buffer { vec4 corners[]; };
 vec4 kernel_corner(uint index) {
-    vec4 p = corners[index];
-    precise float x = p.x * scale.x + shift.x;
-    precise float y = p.y * scale.y + shift.y;
-    precise float z = p.z * scale.z + shift.z;
-    return vec4(x, y, z, 1.0);
+vec4 p = corners[index];
+precise float x = p.x * scale.x + shift.x;
+precise float y = p.y * scale.y + shift.y;
+precise float z = p.z * scale.z + shift.z;
+return vec4(x, y, z, 1.0);
 }
-layout(location = 0) flat out uvec2 skybark_triangle; // its number, pixels in a row
+layout(location = 0) flat out uvec2 skybark_triangle;
 void main() {
-    uint index = skybark_header.x * 3u + uint(SKYBARK_VERTEX_INDEX);
-    skybark_triangle = uvec2(index / 3u, skybark_header.y);
-    gl_Position = kernel_corner(index);
+uint index = skybark_header.x * 3u + uint(SKYBARK_VERTEX_INDEX);
+skybark_triangle = uvec2(index / 3u, skybark_header.y);
+gl_Position = kernel_corner(index);
 }
-)glsl";
+)glsl", 2060};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 faa6a6118af7cc3656af391e88db1c4f71d7a4e48cb8d50b565c9a4501b38463
+// sha256 d659b69c98c3026489ebf530d34f3088bc06ee0a3e7f05d383070d94e6877946
 #pragma once
 
 #include <skybark/kernels/probe_rings.hpp>
@@ -10,12 +10,12 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::probe_rings> {
-    static constexpr std::string_view expand_vert = R"glsl(#version 450
+    static constexpr std::string_view expand_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 layout(location = 0) flat out uint skybark_point;
 void main() { skybark_point = uint(gl_VertexID); }
-)glsl";
-    static constexpr std::string_view rings_geom = R"glsl(#version 450
+)glsl", 137};
+    static constexpr std::string_view rings_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_EXPAND
 #define KERNEL_PARAMETERS uint around;
@@ -35,15 +35,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -68,10 +68,10 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 layout(std430, binding = 0) readonly buffer payloads_buffer { vec4 payloads[]; };
 uint kernel_ring_vertices() { return around; }
 void kernel_ring(uint i, uint first, uint count) {
-    for (uint j = first; j < first + count; ++j) {
-        vertex_out[0] = vec4(float(i), float(j), payloads[i].x, payloads[i].y);
-        emit_vertex();
-    }
+for (uint j = first; j < first + count; ++j) {
+vertex_out[0] = vec4(float(i), float(j), payloads[i].x, payloads[i].y);
+emit_vertex();
+}
 }
 #ifndef SKYBARK_MAX_VERTICES
 #define SKYBARK_MAX_VERTICES 16
@@ -81,21 +81,21 @@ layout(location = 0) flat in uint skybark_point[1];
 layout(xfb_buffer = 0, xfb_stride = 16 * VERTEX_VEC4S) out;
 layout(location = 0, xfb_buffer = 0, xfb_offset = 0) out vec4 skybark_vertex[VERTEX_VEC4S];
 void emit_vertex() {
-    for (int v = 0; v < VERTEX_VEC4S; ++v) {
-        skybark_vertex[v] = vertex_out[v];
-    }
-    EmitVertex();
+for (int v = 0; v < VERTEX_VEC4S; ++v) {
+skybark_vertex[v] = vertex_out[v];
+}
+EmitVertex();
 }
 layout(points, max_vertices = SKYBARK_MAX_VERTICES) out;
 void main() {
-    uint vertices = kernel_ring_vertices();
-    uint part = skybark_header.z;
-    uint parts = (vertices + part - 1u) / part;
-    uint element = skybark_point[0] / parts;
-    uint first = (skybark_point[0] - element * parts) * part;
-    kernel_ring(skybark_header.x + element, first, min(part, vertices - first));
+uint vertices = kernel_ring_vertices();
+uint part = skybark_header.z;
+uint parts = (vertices + part - 1u) / part;
+uint element = skybark_point[0] / parts;
+uint first = (skybark_point[0] - element * parts) * part;
+kernel_ring(skybark_header.x + element, first, min(part, vertices - first));
 }
-)glsl";
+)glsl", 2659};
 };
 
 } // namespace skybark::opengl

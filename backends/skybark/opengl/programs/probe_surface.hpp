@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f28b6173a4a6b475bd715f0a6548b58ee66eb0194724edfaf70e04979fc27b72
+// sha256 d49ef38463b1bb9438c0e72644930acc851156fdea08feb4d04d6d68723c6816
 #pragma once
 
 #include <skybark/kernels/probe_surface.hpp>
@@ -10,7 +10,7 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::probe_surface> {
-    static constexpr std::string_view draw_vert = R"glsl(#version 450
+    static constexpr std::string_view draw_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_VERTEX_STAGE
 #define KERNEL_PARAMETERS uint show; uint tint; float cutoff;
@@ -30,15 +30,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -61,30 +61,30 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct probe_vertex {
-    vec4 position;
-    vec4 color;
+vec4 position;
+vec4 color;
 };
 layout(std430, binding = 0) readonly buffer vertices_buffer { probe_vertex vertices[]; };
 layout(std430, binding = 1) readonly buffer tints_buffer { vec4 tints[]; };
 #ifdef SKYBARK_VERTEX_STAGE
 vec4 kernel_vertex(uint index) {
-    varying_out[0] = vertices[index].color;
-    return vertices[index].position;
+varying_out[0] = vertices[index].color;
+return vertices[index].position;
 }
 #endif
 #ifdef SKYBARK_FRAGMENT_STAGE
 bool kernel_fragment(vec2 pixel, bool front) {
-    if (show == 1u) {
-        color_out = vec4(pixel.x, pixel.y, front ? 1.0 : 0.0, 1.0);
-        return true;
-    }
-    color_out = varying_in[0] * tints[tint];
-    return color_out.w >= cutoff;
+if (show == 1u) {
+color_out = vec4(pixel.x, pixel.y, front ? 1.0 : 0.0, 1.0);
+return true;
+}
+color_out = varying_in[0] * tints[tint];
+return color_out.w >= cutoff;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl";
-    static constexpr std::string_view draw_frag = R"glsl(#version 450
+)glsl", 2288};
+    static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
 #define KERNEL_PARAMETERS uint show; uint tint; float cutoff;
@@ -104,15 +104,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -135,33 +135,33 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct probe_vertex {
-    vec4 position;
-    vec4 color;
+vec4 position;
+vec4 color;
 };
 layout(std430, binding = 0) readonly buffer vertices_buffer { probe_vertex vertices[]; };
 layout(std430, binding = 1) readonly buffer tints_buffer { vec4 tints[]; };
 #ifdef SKYBARK_VERTEX_STAGE
 vec4 kernel_vertex(uint index) {
-    varying_out[0] = vertices[index].color;
-    return vertices[index].position;
+varying_out[0] = vertices[index].color;
+return vertices[index].position;
 }
 #endif
 #ifdef SKYBARK_FRAGMENT_STAGE
 bool kernel_fragment(vec2 pixel, bool front) {
-    if (show == 1u) {
-        color_out = vec4(pixel.x, pixel.y, front ? 1.0 : 0.0, 1.0);
-        return true;
-    }
-    color_out = varying_in[0] * tints[tint];
-    return color_out.w >= cutoff;
+if (show == 1u) {
+color_out = vec4(pixel.x, pixel.y, front ? 1.0 : 0.0, 1.0);
+return true;
+}
+color_out = varying_in[0] * tints[tint];
+return color_out.w >= cutoff;
 }
 #endif
 void main() {
-    if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
-        discard;
-    }
+if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
+discard;
 }
-)glsl";
+}
+)glsl", 2301};
 };
 
 } // namespace skybark::opengl

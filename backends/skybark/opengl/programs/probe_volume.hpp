@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f0fee1e85c936b01b74597b0e8c2f235cefb4f7058191e3fd537b1cccb7a3359
+// sha256 6553a6e47e78be678b35af90b274a25ff0e316dd42c2694a42e301a37cab9d97
 #pragma once
 
 #include <skybark/kernels/probe_volume.hpp>
@@ -10,7 +10,7 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::probe_volume> {
-    static constexpr std::string_view map_comp = R"glsl(#version 450
+    static constexpr std::string_view map_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 64) in;
@@ -32,15 +32,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -63,39 +63,39 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct probe_place {
-    vec4 place;
-    ivec4 cell;
+vec4 place;
+ivec4 cell;
 };
 layout(std430, binding = 0) readonly buffer places_buffer { probe_place places[]; };
 layout(std430, binding = 1) writeonly buffer values_buffer { vec4 values[]; };
 layout(std430, binding = 2) writeonly buffer sizes_buffer { ivec4 sizes[]; };
 void kernel_map(uint i) {
-    vec3 place = places[i].place.xyz;
-    ivec4 cell = places[i].cell;
-    values[i] = vec4(textureLod(kernel_volumes[0], place, 0.0).x,
-                     textureLod(kernel_volumes[1], place, 0.0).x,
-                     texelFetch(kernel_volumes[0], cell.xyz, 0).x,
-                     texelFetch(kernel_volumes[1], cell.xyz, 0).x);
-    sizes[i] = ivec4(i % 2u == 0u ? textureSize(kernel_volumes[0], 0)
-                                  : textureSize(kernel_volumes[1], 0), 0);
-    if (cell.w != 0) {
-        imageStore(kernel_targets[0], cell.xyz, vec4(float(i) + first));
-    }
+vec3 place = places[i].place.xyz;
+ivec4 cell = places[i].cell;
+values[i] = vec4(textureLod(kernel_volumes[0], place, 0.0).x,
+textureLod(kernel_volumes[1], place, 0.0).x,
+texelFetch(kernel_volumes[0], cell.xyz, 0).x,
+texelFetch(kernel_volumes[1], cell.xyz, 0).x);
+sizes[i] = ivec4(i % 2u == 0u ? textureSize(kernel_volumes[0], 0)
+: textureSize(kernel_volumes[1], 0), 0);
+if (cell.w != 0) {
+imageStore(kernel_targets[0], cell.xyz, vec4(float(i) + first));
+}
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
-    return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
-                                         : skybark_header.y;
+return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
+: skybark_header.y;
 }
 void main() {
-    uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
-             gl_LocalInvocationID.x;
-    if (i < skybark_elements()) {
-        kernel_map(skybark_header.x + i);
-    }
+uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
+gl_LocalInvocationID.x;
+if (i < skybark_elements()) {
+kernel_map(skybark_header.x + i);
 }
-)glsl";
-    static constexpr std::string_view levels_comp = R"glsl(#version 450
+}
+)glsl", 2815};
+    static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
 #define writeonly coherent writeonly
@@ -119,15 +119,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -150,37 +150,37 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct probe_place {
-    vec4 place;
-    ivec4 cell;
+vec4 place;
+ivec4 cell;
 };
 layout(std430, binding = 0) readonly buffer places_buffer { probe_place places[]; };
 layout(std430, binding = 1) writeonly buffer values_buffer { vec4 values[]; };
 layout(std430, binding = 2) writeonly buffer sizes_buffer { ivec4 sizes[]; };
 void kernel_map(uint i) {
-    vec3 place = places[i].place.xyz;
-    ivec4 cell = places[i].cell;
-    values[i] = vec4(textureLod(kernel_volumes[0], place, 0.0).x,
-                     textureLod(kernel_volumes[1], place, 0.0).x,
-                     texelFetch(kernel_volumes[0], cell.xyz, 0).x,
-                     texelFetch(kernel_volumes[1], cell.xyz, 0).x);
-    sizes[i] = ivec4(i % 2u == 0u ? textureSize(kernel_volumes[0], 0)
-                                  : textureSize(kernel_volumes[1], 0), 0);
-    if (cell.w != 0) {
-        imageStore(kernel_targets[0], cell.xyz, vec4(float(i) + first));
-    }
+vec3 place = places[i].place.xyz;
+ivec4 cell = places[i].cell;
+values[i] = vec4(textureLod(kernel_volumes[0], place, 0.0).x,
+textureLod(kernel_volumes[1], place, 0.0).x,
+texelFetch(kernel_volumes[0], cell.xyz, 0).x,
+texelFetch(kernel_volumes[1], cell.xyz, 0).x);
+sizes[i] = ivec4(i % 2u == 0u ? textureSize(kernel_volumes[0], 0)
+: textureSize(kernel_volumes[1], 0), 0);
+if (cell.w != 0) {
+imageStore(kernel_targets[0], cell.xyz, vec4(float(i) + first));
+}
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
 void main() {
-    for (uint r = 0u; r < skybark_header.y; ++r) {
-        uvec2 elements = skybark_ranges[skybark_header.x + r];
-        for (uint i = gl_LocalInvocationID.x; i < elements.y; i += 256u) {
-            kernel_map(elements.x + i);
-        }
-        memoryBarrierBuffer();
-        barrier();
-    }
+for (uint r = 0u; r < skybark_header.y; ++r) {
+uvec2 elements = skybark_ranges[skybark_header.x + r];
+for (uint i = gl_LocalInvocationID.x; i < elements.y; i += 256u) {
+kernel_map(elements.x + i);
 }
-)glsl";
+memoryBarrierBuffer();
+barrier();
+}
+}
+)glsl", 2830};
 };
 
 } // namespace skybark::opengl

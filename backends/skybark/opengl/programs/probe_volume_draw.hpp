@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 e04e0723e4528d6db59e2e040d5c1864f397856dac15abf4b684ea1b39b2f88a
+// sha256 3a814abf6950a0359c9c3f80f4c337eeb556c5703c430cfe9648d160866041bb
 #pragma once
 
 #include <skybark/kernels/probe_volume_draw.hpp>
@@ -10,7 +10,7 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::probe_volume_draw> {
-    static constexpr std::string_view draw_vert = R"glsl(#version 450
+    static constexpr std::string_view draw_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_VERTEX_STAGE
 #define KERNEL_PARAMETERS uint read; int layer;
@@ -32,15 +32,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -63,41 +63,41 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct probe_vertex {
-    vec4 position;
-    vec4 color;
+vec4 position;
+vec4 color;
 };
 layout(std430, binding = 0) readonly buffer vertices_buffer { probe_vertex vertices[]; };
 #ifdef SKYBARK_VERTEX_STAGE
 vec4 kernel_vertex(uint index) {
-    varying_out[0] = vertices[index].color;
-    return vertices[index].position;
+varying_out[0] = vertices[index].color;
+return vertices[index].position;
 }
 #endif
 #ifdef SKYBARK_FRAGMENT_STAGE
 bool kernel_fragment(vec2 pixel, bool front) {
-    vec3 place = varying_in[0].xyz;
-    ivec3 cell = ivec3(ivec2(pixel), layer);
-    switch (read) {
-    case 0u:
-        color_out = vec4(textureLod(kernel_volumes[0], place, 0.0).x,
-                         textureLod(kernel_volumes[1], place, 0.0).x,
-                         textureLod(kernel_images[0], place.xy, 0.0).x, 1.0);
-        break;
-    case 1u:
-        color_out = vec4(texelFetch(kernel_volumes[0], cell, 0).x,
-                         texelFetch(kernel_volumes[1], cell, 0).x,
-                         texelFetch(kernel_images[0], cell.xy, 0).x, 1.0);
-        break;
-    default:
-        color_out = vec4(textureSize(kernel_volumes[0], 0), textureSize(kernel_volumes[1], 0).x);
-        break;
-    }
-    return true;
+vec3 place = varying_in[0].xyz;
+ivec3 cell = ivec3(ivec2(pixel), layer);
+switch (read) {
+case 0u:
+color_out = vec4(textureLod(kernel_volumes[0], place, 0.0).x,
+textureLod(kernel_volumes[1], place, 0.0).x,
+textureLod(kernel_images[0], place.xy, 0.0).x, 1.0);
+break;
+case 1u:
+color_out = vec4(texelFetch(kernel_volumes[0], cell, 0).x,
+texelFetch(kernel_volumes[1], cell, 0).x,
+texelFetch(kernel_images[0], cell.xy, 0).x, 1.0);
+break;
+default:
+color_out = vec4(textureSize(kernel_volumes[0], 0), textureSize(kernel_volumes[1], 0).x);
+break;
+}
+return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl";
-    static constexpr std::string_view draw_frag = R"glsl(#version 450
+)glsl", 2636};
+    static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
 #define KERNEL_PARAMETERS uint read; int layer;
@@ -119,15 +119,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -150,44 +150,44 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct probe_vertex {
-    vec4 position;
-    vec4 color;
+vec4 position;
+vec4 color;
 };
 layout(std430, binding = 0) readonly buffer vertices_buffer { probe_vertex vertices[]; };
 #ifdef SKYBARK_VERTEX_STAGE
 vec4 kernel_vertex(uint index) {
-    varying_out[0] = vertices[index].color;
-    return vertices[index].position;
+varying_out[0] = vertices[index].color;
+return vertices[index].position;
 }
 #endif
 #ifdef SKYBARK_FRAGMENT_STAGE
 bool kernel_fragment(vec2 pixel, bool front) {
-    vec3 place = varying_in[0].xyz;
-    ivec3 cell = ivec3(ivec2(pixel), layer);
-    switch (read) {
-    case 0u:
-        color_out = vec4(textureLod(kernel_volumes[0], place, 0.0).x,
-                         textureLod(kernel_volumes[1], place, 0.0).x,
-                         textureLod(kernel_images[0], place.xy, 0.0).x, 1.0);
-        break;
-    case 1u:
-        color_out = vec4(texelFetch(kernel_volumes[0], cell, 0).x,
-                         texelFetch(kernel_volumes[1], cell, 0).x,
-                         texelFetch(kernel_images[0], cell.xy, 0).x, 1.0);
-        break;
-    default:
-        color_out = vec4(textureSize(kernel_volumes[0], 0), textureSize(kernel_volumes[1], 0).x);
-        break;
-    }
-    return true;
+vec3 place = varying_in[0].xyz;
+ivec3 cell = ivec3(ivec2(pixel), layer);
+switch (read) {
+case 0u:
+color_out = vec4(textureLod(kernel_volumes[0], place, 0.0).x,
+textureLod(kernel_volumes[1], place, 0.0).x,
+textureLod(kernel_images[0], place.xy, 0.0).x, 1.0);
+break;
+case 1u:
+color_out = vec4(texelFetch(kernel_volumes[0], cell, 0).x,
+texelFetch(kernel_volumes[1], cell, 0).x,
+texelFetch(kernel_images[0], cell.xy, 0).x, 1.0);
+break;
+default:
+color_out = vec4(textureSize(kernel_volumes[0], 0), textureSize(kernel_volumes[1], 0).x);
+break;
+}
+return true;
 }
 #endif
 void main() {
-    if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
-        discard;
-    }
+if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
+discard;
 }
-)glsl";
+}
+)glsl", 2649};
 };
 
 } // namespace skybark::opengl

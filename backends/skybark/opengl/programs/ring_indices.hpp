@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 59fd273199f2d1e95454444c0f9ac05fc0a6b3dbb5e49330ade247adbf255836
+// sha256 d250d753b17a83beabdc46271e64c3de48aab22db9dfebef10d5e13dad618b4c
 #pragma once
 
 #include <skybark/kernels/ring_indices.hpp>
@@ -10,7 +10,7 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::ring_indices> {
-    static constexpr std::string_view map_comp = R"glsl(#version 450
+    static constexpr std::string_view map_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 64) in;
@@ -30,15 +30,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -63,22 +63,22 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 layout(std430, binding = 0) readonly buffer pattern_buffer { uint pattern[]; };
 layout(std430, binding = 1) writeonly buffer indices_buffer { uint indices[]; };
 void kernel_map(uint i) {
-    indices[i] = base_vertex + (i / pattern_size) * ring_vertices + pattern[i % pattern_size];
+indices[i] = base_vertex + (i / pattern_size) * ring_vertices + pattern[i % pattern_size];
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
-    return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
-                                         : skybark_header.y;
+return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
+: skybark_header.y;
 }
 void main() {
-    uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
-             gl_LocalInvocationID.x;
-    if (i < skybark_elements()) {
-        kernel_map(skybark_header.x + i);
-    }
+uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
+gl_LocalInvocationID.x;
+if (i < skybark_elements()) {
+kernel_map(skybark_header.x + i);
 }
-)glsl";
-    static constexpr std::string_view levels_comp = R"glsl(#version 450
+}
+)glsl", 2315};
+    static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
 #define writeonly coherent writeonly
@@ -100,15 +100,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -133,20 +133,20 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 layout(std430, binding = 0) readonly buffer pattern_buffer { uint pattern[]; };
 layout(std430, binding = 1) writeonly buffer indices_buffer { uint indices[]; };
 void kernel_map(uint i) {
-    indices[i] = base_vertex + (i / pattern_size) * ring_vertices + pattern[i % pattern_size];
+indices[i] = base_vertex + (i / pattern_size) * ring_vertices + pattern[i % pattern_size];
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
 void main() {
-    for (uint r = 0u; r < skybark_header.y; ++r) {
-        uvec2 elements = skybark_ranges[skybark_header.x + r];
-        for (uint i = gl_LocalInvocationID.x; i < elements.y; i += 256u) {
-            kernel_map(elements.x + i);
-        }
-        memoryBarrierBuffer();
-        barrier();
-    }
+for (uint r = 0u; r < skybark_header.y; ++r) {
+uvec2 elements = skybark_ranges[skybark_header.x + r];
+for (uint i = gl_LocalInvocationID.x; i < elements.y; i += 256u) {
+kernel_map(elements.x + i);
 }
-)glsl";
+memoryBarrierBuffer();
+barrier();
+}
+}
+)glsl", 2330};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d16d1f3735aa824ebb6125b774df034cb3fc4e8e693fd1e17f3456c0da1e7b29
+// sha256 374d709f4513f2c568ef3ac494d370f2a28e3a81a6588884e2e9dddaecd33ef5
 #pragma once
 
 #include <skybark/kernels/scatter_coarsen.hpp>
@@ -10,7 +10,7 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::scatter_coarsen> {
-    static constexpr std::string_view voxels_comp = R"glsl(#version 450
+    static constexpr std::string_view voxels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -31,15 +31,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -64,40 +64,40 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 float scatter_load(int n, ivec3 at) { return texelFetch(kernel_volumes[n], at, 0).x; }
 ivec3 scatter_size(int n) { return textureSize(kernel_volumes[n], 0); }
 ivec3 first_child(ivec3 parent, ivec3 size) {
-    return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
-                 size.z > 1 ? 2 * parent.z : 0);
+return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
+size.z > 1 ? 2 * parent.z : 0);
 }
 ivec3 child_of(ivec3 first, int which, ivec3 size) {
-    return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
-                 size.z > 1 ? first.z + (which >> 2) : 0);
+return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
+size.z > 1 ? first.z + (which >> 2) : 0);
 }
 ivec3 held(ivec3 at, ivec3 size) { return min(at, size - 1); }
 bool within(ivec3 at, ivec3 size) { return all(lessThan(at, size)); }
 void kernel_voxel(ivec3 at) {
-    ivec3 size = scatter_size(0);
-    ivec3 first = first_child(at, size);
-    float extinction = 0.0;
-    float scattered = 0.0;
-    float beam = 0.0;
-    for (int c = 0; c < 8; ++c) {
-        ivec3 child = child_of(first, c, size);
-        bool inside = within(child, size);
-        extinction += inside ? scatter_load(0, child) : 0.0;
-        scattered += inside ? scatter_load(1, child) : 0.0;
-        if ((c & 2) != 0) {
-            beam += inside ? scatter_load(2, child) : 1.0;
-        }
-    }
-    imageStore(kernel_targets[0], at, vec4(0.125 * extinction));
-    imageStore(kernel_targets[1], at, vec4(0.125 * scattered));
-    imageStore(kernel_targets[2], at, vec4(0.25 * beam));
+ivec3 size = scatter_size(0);
+ivec3 first = first_child(at, size);
+float extinction = 0.0;
+float scattered = 0.0;
+float beam = 0.0;
+for (int c = 0; c < 8; ++c) {
+ivec3 child = child_of(first, c, size);
+bool inside = within(child, size);
+extinction += inside ? scatter_load(0, child) : 0.0;
+scattered += inside ? scatter_load(1, child) : 0.0;
+if ((c & 2) != 0) {
+beam += inside ? scatter_load(2, child) : 1.0;
+}
+}
+imageStore(kernel_targets[0], at, vec4(0.125 * extinction));
+imageStore(kernel_targets[1], at, vec4(0.125 * scattered));
+imageStore(kernel_targets[2], at, vec4(0.25 * beam));
 }
 void main() {
-    if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
-        kernel_voxel(ivec3(gl_GlobalInvocationID));
-    }
+if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
+kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
-)glsl";
+}
+)glsl", 3004};
 };
 
 } // namespace skybark::opengl

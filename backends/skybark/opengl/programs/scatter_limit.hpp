@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 cbd9397cec015eefe0f1e9414b1da6075c36cedf7155e4ad8ff00a5e2091e3d8
+// sha256 7f1a2e9bc1ddea6380e7dfbc4f1aa1860650f3435b24c5825d48103f6032f284
 #pragma once
 
 #include <skybark/kernels/scatter_limit.hpp>
@@ -10,7 +10,7 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::scatter_limit> {
-    static constexpr std::string_view voxels_comp = R"glsl(#version 450
+    static constexpr std::string_view voxels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -32,15 +32,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -63,70 +63,70 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct scatter_balance {
-    float gain;
-    float loss;
+float gain;
+float loss;
 };
 scatter_balance scatter_across(scatter_balance sum, float phi, float here, float beyond,
-                               float side) {
-    float passes = 2.0f / ((here + beyond) * side * side);
-    scatter_balance now = sum;
-    now.gain = sum.gain + passes * phi;
-    now.loss = sum.loss + passes;
-    return now;
+float side) {
+float passes = 2.0f / ((here + beyond) * side * side);
+scatter_balance now = sum;
+now.gain = sum.gain + passes * phi;
+now.loss = sum.loss + passes;
+return now;
 }
 float scatter_escape(float empty, float side) { return 1.0f / (2.0f + 0.5f * empty * side); }
 float scatter_relaxed(scatter_balance sum, float phi, float weight) {
-    return (1.0f - weight) * phi + weight * (sum.gain / sum.loss);
+return (1.0f - weight) * phi + weight * (sum.gain / sum.loss);
 }
 float scatter_resistance(float transport, float empty, float spreading, float across) {
-    return 3.0f * transport + empty + spreading * across;
+return 3.0f * transport + empty + spreading * across;
 }
 float scatter_moment(float moment, float beam, float here, float beyond, float w_here,
-                     float w_beyond) {
-    return moment * beam * (here + beyond) / (w_here + w_beyond);
+float w_beyond) {
+return moment * beam * (here + beyond) / (w_here + w_beyond);
 }
 float scatter_load(int n, ivec3 at) { return texelFetch(kernel_volumes[n], at, 0).x; }
 ivec3 scatter_size(int n) { return textureSize(kernel_volumes[n], 0); }
 ivec3 first_child(ivec3 parent, ivec3 size) {
-    return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
-                 size.z > 1 ? 2 * parent.z : 0);
+return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
+size.z > 1 ? 2 * parent.z : 0);
 }
 ivec3 child_of(ivec3 first, int which, ivec3 size) {
-    return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
-                 size.z > 1 ? first.z + (which >> 2) : 0);
+return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
+size.z > 1 ? first.z + (which >> 2) : 0);
 }
 ivec3 held(ivec3 at, ivec3 size) { return min(at, size - 1); }
 bool within(ivec3 at, ivec3 size) { return all(lessThan(at, size)); }
 float sideways(ivec3 at) {
-    ivec3 last = scatter_size(0) - 1;
-    int left = max(at.x - 1, 0);
-    int right = min(at.x + 1, last.x);
-    int back = max(at.z - 1, 0);
-    int front = min(at.z + 1, last.z);
-    float to_left = scatter_load(0, ivec3(left, at.y, at.z));
-    float to_right = scatter_load(0, ivec3(right, at.y, at.z));
-    float to_back = scatter_load(0, ivec3(at.x, at.y, back));
-    float to_front = scatter_load(0, ivec3(at.x, at.y, front));
-    float x = (to_right - to_left) / (float(max(right - left, 1)) * sides.x);
-    float z = (to_front - to_back) / (float(max(front - back, 1)) * sides.z);
-    float around = 0.25 * ((to_left + to_right) + (to_back + to_front));
-    float here = max(max(scatter_load(0, at), around), 1e-12);
-    return sqrt(x * x + z * z) / here;
+ivec3 last = scatter_size(0) - 1;
+int left = max(at.x - 1, 0);
+int right = min(at.x + 1, last.x);
+int back = max(at.z - 1, 0);
+int front = min(at.z + 1, last.z);
+float to_left = scatter_load(0, ivec3(left, at.y, at.z));
+float to_right = scatter_load(0, ivec3(right, at.y, at.z));
+float to_back = scatter_load(0, ivec3(at.x, at.y, back));
+float to_front = scatter_load(0, ivec3(at.x, at.y, front));
+float x = (to_right - to_left) / (float(max(right - left, 1)) * sides.x);
+float z = (to_front - to_back) / (float(max(front - back, 1)) * sides.z);
+float around = 0.25 * ((to_left + to_right) + (to_back + to_front));
+float here = max(max(scatter_load(0, at), around), 1e-12);
+return sqrt(x * x + z * z) / here;
 }
 void kernel_voxel(ivec3 at) {
-    float across = assumed;
-    if (assumed < 0.0) {
-        across = sideways(at);
-    }
-    imageStore(kernel_targets[0], at,
-               vec4(scatter_resistance(transport * scatter_load(1, at), sides.w, spreading, across)));
+float across = assumed;
+if (assumed < 0.0) {
+across = sideways(at);
+}
+imageStore(kernel_targets[0], at,
+vec4(scatter_resistance(transport * scatter_load(1, at), sides.w, spreading, across)));
 }
 void main() {
-    if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
-        kernel_voxel(ivec3(gl_GlobalInvocationID));
-    }
+if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
+kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
-)glsl";
+}
+)glsl", 4292};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 117929b63872cf2a393ad2c306022fa89aa5a229144f3eba48e6be1d8486a33d
+// sha256 1f0f94b7f3238af19b043dd0c039f54790d35e319dafe1272b2b07c3d8b6db37
 #pragma once
 
 #include <skybark/kernels/scatter_prolong.hpp>
@@ -10,7 +10,7 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::scatter_prolong> {
-    static constexpr std::string_view voxels_comp = R"glsl(#version 450
+    static constexpr std::string_view voxels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -32,15 +32,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -65,35 +65,35 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 float scatter_load(int n, ivec3 at) { return texelFetch(kernel_volumes[n], at, 0).x; }
 ivec3 scatter_size(int n) { return textureSize(kernel_volumes[n], 0); }
 ivec3 first_child(ivec3 parent, ivec3 size) {
-    return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
-                 size.z > 1 ? 2 * parent.z : 0);
+return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
+size.z > 1 ? 2 * parent.z : 0);
 }
 ivec3 child_of(ivec3 first, int which, ivec3 size) {
-    return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
-                 size.z > 1 ? first.z + (which >> 2) : 0);
+return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
+size.z > 1 ? first.z + (which >> 2) : 0);
 }
 ivec3 held(ivec3 at, ivec3 size) { return min(at, size - 1); }
 bool within(ivec3 at, ivec3 size) { return all(lessThan(at, size)); }
 float row(int near, int far, int y, int z) {
-    return 0.75 * scatter_load(1, ivec3(near, y, z)) + 0.25 * scatter_load(1, ivec3(far, y, z));
+return 0.75 * scatter_load(1, ivec3(near, y, z)) + 0.25 * scatter_load(1, ivec3(far, y, z));
 }
 void kernel_voxel(ivec3 at) {
-    ivec3 last = scatter_size(1) - 1;
-    ivec3 near = min(at / 2, last);
-    ivec3 far = clamp(near + 2 * (at - 2 * (at / 2)) - 1, ivec3(0), last);
-    float sum = 0.75 * (0.75 * row(near.x, far.x, near.y, near.z) + 0.25 * row(near.x, far.x, far.y, near.z)) +
-                0.25 * (0.75 * row(near.x, far.x, near.y, far.z) + 0.25 * row(near.x, far.x, far.y, far.z));
-    if (from_zero == 0u) {
-        sum = scatter_load(0, at) + sum;
-    }
-    imageStore(kernel_targets[0], at, vec4(sum));
+ivec3 last = scatter_size(1) - 1;
+ivec3 near = min(at / 2, last);
+ivec3 far = clamp(near + 2 * (at - 2 * (at / 2)) - 1, ivec3(0), last);
+float sum = 0.75 * (0.75 * row(near.x, far.x, near.y, near.z) + 0.25 * row(near.x, far.x, far.y, near.z)) +
+0.25 * (0.75 * row(near.x, far.x, near.y, far.z) + 0.25 * row(near.x, far.x, far.y, far.z));
+if (from_zero == 0u) {
+sum = scatter_load(0, at) + sum;
+}
+imageStore(kernel_targets[0], at, vec4(sum));
 }
 void main() {
-    if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
-        kernel_voxel(ivec3(gl_GlobalInvocationID));
-    }
+if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
+kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
-)glsl";
+}
+)glsl", 3040};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 45c016494eaa897fb3b6aaaa0b4df0bc2996a19cc570b8b0292d2732b8e5171e
+// sha256 7ec68cca1105205ba69eabd45018eb8122882843ad5c125787f47b0bd9a4b697
 #pragma once
 
 #include <skybark/kernels/scatter_relax.hpp>
@@ -10,12 +10,12 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::scatter_relax> {
-    static constexpr std::string_view voxels_comp = R"glsl(#version 450
+    static constexpr std::string_view voxels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 8, local_size_y = 8) in;
 #define KERNEL_PARAMETERS \
-    vec4 sides; float absorption; float weight; uint from_zero; float least;
+vec4 sides; float absorption; float weight; uint from_zero; float least;
 #define KERNEL_VOLUMES 4
 #define KERNEL_TARGETS 1
 #ifdef SKYBARK_VULKAN
@@ -33,15 +33,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -64,69 +64,69 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct scatter_balance {
-    float gain;
-    float loss;
+float gain;
+float loss;
 };
 scatter_balance scatter_across(scatter_balance sum, float phi, float here, float beyond,
-                               float side) {
-    float passes = 2.0f / ((here + beyond) * side * side);
-    scatter_balance now = sum;
-    now.gain = sum.gain + passes * phi;
-    now.loss = sum.loss + passes;
-    return now;
+float side) {
+float passes = 2.0f / ((here + beyond) * side * side);
+scatter_balance now = sum;
+now.gain = sum.gain + passes * phi;
+now.loss = sum.loss + passes;
+return now;
 }
 float scatter_escape(float empty, float side) { return 1.0f / (2.0f + 0.5f * empty * side); }
 float scatter_relaxed(scatter_balance sum, float phi, float weight) {
-    return (1.0f - weight) * phi + weight * (sum.gain / sum.loss);
+return (1.0f - weight) * phi + weight * (sum.gain / sum.loss);
 }
 float scatter_resistance(float transport, float empty, float spreading, float across) {
-    return 3.0f * transport + empty + spreading * across;
+return 3.0f * transport + empty + spreading * across;
 }
 float scatter_moment(float moment, float beam, float here, float beyond, float w_here,
-                     float w_beyond) {
-    return moment * beam * (here + beyond) / (w_here + w_beyond);
+float w_beyond) {
+return moment * beam * (here + beyond) / (w_here + w_beyond);
 }
 float scatter_load(int n, ivec3 at) { return texelFetch(kernel_volumes[n], at, 0).x; }
 ivec3 scatter_size(int n) { return textureSize(kernel_volumes[n], 0); }
 ivec3 first_child(ivec3 parent, ivec3 size) {
-    return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
-                 size.z > 1 ? 2 * parent.z : 0);
+return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
+size.z > 1 ? 2 * parent.z : 0);
 }
 ivec3 child_of(ivec3 first, int which, ivec3 size) {
-    return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
-                 size.z > 1 ? first.z + (which >> 2) : 0);
+return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
+size.z > 1 ? first.z + (which >> 2) : 0);
 }
 ivec3 held(ivec3 at, ivec3 size) { return min(at, size - 1); }
 bool within(ivec3 at, ivec3 size) { return all(lessThan(at, size)); }
 scatter_balance across(scatter_balance sum, int axis, ivec3 to, float here, bool from_zero) {
-    if (to[axis] < 0 || to[axis] >= scatter_size(1)[axis]) {
-        sum.loss += scatter_escape(sides.w, sides[axis]) / sides[axis];
-        return sum;
-    }
-    float phi = from_zero ? 0.0 : scatter_load(0, to);
-    return scatter_across(sum, phi, here, scatter_load(1, to), sides[axis]);
+if (to[axis] < 0 || to[axis] >= scatter_size(1)[axis]) {
+sum.loss += scatter_escape(sides.w, sides[axis]) / sides[axis];
+return sum;
+}
+float phi = from_zero ? 0.0 : scatter_load(0, to);
+return scatter_across(sum, phi, here, scatter_load(1, to), sides[axis]);
 }
 scatter_balance balance(ivec3 at, bool from_zero) {
-    float here = scatter_load(1, at);
-    scatter_balance sum = scatter_balance(scatter_load(3, at), absorption * scatter_load(2, at));
-    sum = across(sum, 0, ivec3(at.x - 1, at.y, at.z), here, from_zero);
-    sum = across(sum, 0, ivec3(at.x + 1, at.y, at.z), here, from_zero);
-    sum = across(sum, 1, ivec3(at.x, at.y - 1, at.z), here, from_zero);
-    sum = across(sum, 1, ivec3(at.x, at.y + 1, at.z), here, from_zero);
-    sum = across(sum, 2, ivec3(at.x, at.y, at.z - 1), here, from_zero);
-    return across(sum, 2, ivec3(at.x, at.y, at.z + 1), here, from_zero);
+float here = scatter_load(1, at);
+scatter_balance sum = scatter_balance(scatter_load(3, at), absorption * scatter_load(2, at));
+sum = across(sum, 0, ivec3(at.x - 1, at.y, at.z), here, from_zero);
+sum = across(sum, 0, ivec3(at.x + 1, at.y, at.z), here, from_zero);
+sum = across(sum, 1, ivec3(at.x, at.y - 1, at.z), here, from_zero);
+sum = across(sum, 1, ivec3(at.x, at.y + 1, at.z), here, from_zero);
+sum = across(sum, 2, ivec3(at.x, at.y, at.z - 1), here, from_zero);
+return across(sum, 2, ivec3(at.x, at.y, at.z + 1), here, from_zero);
 }
 void kernel_voxel(ivec3 at) {
-    scatter_balance sum = balance(at, from_zero != 0u);
-    float phi = from_zero != 0u ? 0.0 : scatter_load(0, at);
-    imageStore(kernel_targets[0], at, vec4(max(scatter_relaxed(sum, phi, weight), least)));
+scatter_balance sum = balance(at, from_zero != 0u);
+float phi = from_zero != 0u ? 0.0 : scatter_load(0, at);
+imageStore(kernel_targets[0], at, vec4(max(scatter_relaxed(sum, phi, weight), least)));
 }
 void main() {
-    if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
-        kernel_voxel(ivec3(gl_GlobalInvocationID));
-    }
+if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
+kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
-)glsl";
+}
+)glsl", 4519};
 };
 
 } // namespace skybark::opengl

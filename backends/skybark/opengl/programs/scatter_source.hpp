@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 260cd1fccb8df63b7466aa6a60651cf495b4414446739efa7388350351c7a096
+// sha256 286613de253b872a0678b6e8eb49d8b7cdcb8ca64cc8e4b25acb0f9a39d5ae60
 #pragma once
 
 #include <skybark/kernels/scatter_source.hpp>
@@ -10,7 +10,7 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::scatter_source> {
-    static constexpr std::string_view voxels_comp = R"glsl(#version 450
+    static constexpr std::string_view voxels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -32,15 +32,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -63,57 +63,57 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct scatter_balance {
-    float gain;
-    float loss;
+float gain;
+float loss;
 };
 scatter_balance scatter_across(scatter_balance sum, float phi, float here, float beyond,
-                               float side) {
-    float passes = 2.0f / ((here + beyond) * side * side);
-    scatter_balance now = sum;
-    now.gain = sum.gain + passes * phi;
-    now.loss = sum.loss + passes;
-    return now;
+float side) {
+float passes = 2.0f / ((here + beyond) * side * side);
+scatter_balance now = sum;
+now.gain = sum.gain + passes * phi;
+now.loss = sum.loss + passes;
+return now;
 }
 float scatter_escape(float empty, float side) { return 1.0f / (2.0f + 0.5f * empty * side); }
 float scatter_relaxed(scatter_balance sum, float phi, float weight) {
-    return (1.0f - weight) * phi + weight * (sum.gain / sum.loss);
+return (1.0f - weight) * phi + weight * (sum.gain / sum.loss);
 }
 float scatter_resistance(float transport, float empty, float spreading, float across) {
-    return 3.0f * transport + empty + spreading * across;
+return 3.0f * transport + empty + spreading * across;
 }
 float scatter_moment(float moment, float beam, float here, float beyond, float w_here,
-                     float w_beyond) {
-    return moment * beam * (here + beyond) / (w_here + w_beyond);
+float w_beyond) {
+return moment * beam * (here + beyond) / (w_here + w_beyond);
 }
 float scatter_load(int n, ivec3 at) { return texelFetch(kernel_volumes[n], at, 0).x; }
 ivec3 scatter_size(int n) { return textureSize(kernel_volumes[n], 0); }
 ivec3 first_child(ivec3 parent, ivec3 size) {
-    return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
-                 size.z > 1 ? 2 * parent.z : 0);
+return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
+size.z > 1 ? 2 * parent.z : 0);
 }
 ivec3 child_of(ivec3 first, int which, ivec3 size) {
-    return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
-                 size.z > 1 ? first.z + (which >> 2) : 0);
+return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
+size.z > 1 ? first.z + (which >> 2) : 0);
 }
 ivec3 held(ivec3 at, ivec3 size) { return min(at, size - 1); }
 bool within(ivec3 at, ivec3 size) { return all(lessThan(at, size)); }
 float moved(float beam, ivec3 a, ivec3 b) {
-    return scatter_moment(moment, beam, scatter_load(2, a), scatter_load(2, b), scatter_load(3, a),
-                          scatter_load(3, b));
+return scatter_moment(moment, beam, scatter_load(2, a), scatter_load(2, b), scatter_load(3, a),
+scatter_load(3, b));
 }
 void kernel_voxel(ivec3 at) {
-    ivec3 above = ivec3(at.x, at.y + 1, at.z);
-    ivec3 below = ivec3(at.x, at.y - 1, at.z);
-    float gained = above.y < scatter_size(0).y ? moved(scatter_load(1, at), at, above) : 0.0;
-    float lost = at.y > 0 ? moved(scatter_load(1, below), at, below) : 0.0;
-    imageStore(kernel_targets[0], at, vec4(scatter_load(0, at) + (gained - lost)));
+ivec3 above = ivec3(at.x, at.y + 1, at.z);
+ivec3 below = ivec3(at.x, at.y - 1, at.z);
+float gained = above.y < scatter_size(0).y ? moved(scatter_load(1, at), at, above) : 0.0;
+float lost = at.y > 0 ? moved(scatter_load(1, below), at, below) : 0.0;
+imageStore(kernel_targets[0], at, vec4(scatter_load(0, at) + (gained - lost)));
 }
 void main() {
-    if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
-        kernel_voxel(ivec3(gl_GlobalInvocationID));
-    }
+if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
+kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
-)glsl";
+}
+)glsl", 3806};
 };
 
 } // namespace skybark::opengl
