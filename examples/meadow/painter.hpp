@@ -230,10 +230,9 @@ class painter {
             return failure(done.error());
         }
         pictures_.push_back(std::move(*image));
-        materials_.push_back(
-            {from.as,
-             {glm::vec4(from.low, 0), glm::vec4(from.high, 0), from.around, from.along, 1},
-             {from.through}});
+        const kernels::meadow_bark bark{glm::vec4(from.low, 0), glm::vec4(from.high, 0),
+                                        from.around, from.along, 1};
+        materials_.push_back({bark, kernels::meadow_leaf{from.through}});
         return {};
     }
 
