@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1832975044a83201cb57711139c56366dcb09a0b7c2a833eea4584761d9978be
+// sha256 2b5592fe4d3228cba9479aa456b611b96b80157610996ed1650116988769a542
 #pragma once
 
 #include <skybark/kernels/meadow_land.hpp>
@@ -10,7 +10,7 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::meadow_land> {
-    static constexpr std::string_view draw_vert = R"glsl(#version 450
+    static constexpr std::string_view draw_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_VERTEX_STAGE
 #define KERNEL_VARYINGS 3
@@ -31,15 +31,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -62,449 +62,449 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct surface_vertex {
-    vec3 position;
-    float u;
-    vec3 normal;
-    float v;
-    vec4 tangent;
+vec3 position;
+float u;
+vec3 normal;
+float v;
+vec4 tangent;
 };
 struct branch_end {
-    vec3 position;
-    float radius;
-    vec4 orientation;
-    float path;
-    float slope;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+vec4 orientation;
+float path;
+float slope;
+float reserved0;
+float reserved1;
 };
 struct branch_segment {
-    uint start;
-    uint end;
-    uint caps;
-    uint reserved;
+uint start;
+uint end;
+uint caps;
+uint reserved;
 };
 struct segment_pose {
-    vec4 rotation;
-    vec3 base;
-    float reserved0;
-    vec3 shift;
-    float reserved1;
+vec4 rotation;
+vec3 base;
+float reserved0;
+vec3 shift;
+float reserved1;
 };
 struct end_carrier {
-    uint moved_by;
-    uint turned_by;
-    uint and_by;
-    uint reserved;
+uint moved_by;
+uint turned_by;
+uint and_by;
+uint reserved;
 };
 struct leaf {
-    vec3 position;
-    float width;
-    vec4 orientation;
-    float length;
-    uint carrier;
-    uint seed;
-    float fold;
+vec3 position;
+float width;
+vec4 orientation;
+float length;
+uint carrier;
+uint seed;
+float fold;
 };
 struct segment_load {
-    vec3 force;
-    float drag;
+vec3 force;
+float drag;
 };
 struct cloud_particle {
-    vec3 position;
-    float radius;
-    float optical_depth;
-    float albedo;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+float optical_depth;
+float albedo;
+float reserved0;
+float reserved1;
 };
 struct light_grid {
-    vec4 anchor;
-    vec4 row_x;
-    vec4 row_y;
-    vec4 row_z;
-    vec4 voxel;
+vec4 anchor;
+vec4 row_x;
+vec4 row_y;
+vec4 row_z;
+vec4 voxel;
 };
 struct gather_triangle {
-    vec3 a;
-    uint material;
-    vec3 b;
-    uint alpha;
-    vec3 c;
-    uint reserved;
+vec3 a;
+uint material;
+vec3 b;
+uint alpha;
+vec3 c;
+uint reserved;
 };
 struct gather_material {
-    vec3 diffuse;
-    uint two_sided;
-    vec3 emission;
-    float reserved0;
-    vec3 transmission;
-    float reserved1;
+vec3 diffuse;
+uint two_sided;
+vec3 emission;
+float reserved0;
+vec3 transmission;
+float reserved1;
 };
 struct gather_sample {
-    vec3 position;
-    float reserved0;
-    vec3 normal;
-    float reserved1;
+vec3 position;
+float reserved0;
+vec3 normal;
+float reserved1;
 };
 struct gather_hit {
-    float distance;
-    uint surface;
-    float u;
-    float v;
+float distance;
+uint surface;
+float u;
+float v;
 };
 struct ray_bundle {
-    vec4 centre;
-    vec4 right;
-    vec4 up;
-    vec4 direction;
+vec4 centre;
+vec4 right;
+vec4 up;
+vec4 direction;
 };
 struct patch_table {
-    uint front;
-    uint back;
-    uint rows;
-    uint reserved;
+uint front;
+uint back;
+uint rows;
+uint reserved;
 };
 struct daylight_sky {
-    vec4 a; // Perez' coefficients: x for Y, y for x, z for y
-    vec4 b;
-    vec4 c;
-    vec4 d;
-    vec4 e;
-    vec4 zenith;     // Y, x, y at the zenith over Perez' function there
-    vec4 to_sun;     // xyz: unit
-    vec4 sunlight;   // rgb: irradiance of a surface that faces the sun over pi
+vec4 a;
+vec4 b;
+vec4 c;
+vec4 d;
+vec4 e;
+vec4 zenith;
+vec4 to_sun;
+vec4 sunlight;
 };
 float exp_shared(float x) {
-    float s = x * (1.0f / 64.0f);
-    float p = 1.0f + s * (1.0f + s * (0.5f + s * (0.16666667f + s * (0.041666667f + s * 0.0083333333f))));
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    return p * p;
+float s = x * (1.0f / 64.0f);
+float p = 1.0f + s * (1.0f + s * (0.5f + s * (0.16666667f + s * (0.041666667f + s * 0.0083333333f))));
+p = p * p;
+p = p * p;
+p = p * p;
+p = p * p;
+p = p * p;
+return p * p;
 }
 float arccos_shared(float x) {
-    float c = clamp(x, -1.0f, 1.0f);
-    return atan(sqrt((1.0f - c) * (1.0f + c)), c);
+float c = clamp(x, -1.0f, 1.0f);
+return atan(sqrt((1.0f - c) * (1.0f + c)), c);
 }
 float perez(float a, float b, float c, float d, float e, float cos_zenith, float gamma) {
-    float cos_gamma = cos(gamma);
-    return (1.0f + a * exp_shared(b / cos_zenith)) *
-           (1.0f + c * exp_shared(d * gamma) + e * cos_gamma * cos_gamma);
+float cos_gamma = cos(gamma);
+return (1.0f + a * exp_shared(b / cos_zenith)) *
+(1.0f + c * exp_shared(d * gamma) + e * cos_gamma * cos_gamma);
 }
 vec3 srgb_from_xyY(float luminance, float x, float y) {
-    float X = luminance * x / y;
-    float Z = luminance * (1.0f - x - y) / y;
-    return vec3(3.2406f * X - 1.5372f * luminance - 0.4986f * Z,
-                -0.9689f * X + 1.8758f * luminance + 0.0415f * Z,
-                0.0557f * X - 0.2040f * luminance + 1.0570f * Z);
+float X = luminance * x / y;
+float Z = luminance * (1.0f - x - y) / y;
+return vec3(3.2406f * X - 1.5372f * luminance - 0.4986f * Z,
+-0.9689f * X + 1.8758f * luminance + 0.0415f * Z,
+0.0557f * X - 0.2040f * luminance + 1.0570f * Z);
 }
 vec3 sky_radiance(daylight_sky sky, vec3 to) {
-    float up = max(to.y, 0.01f);
-    float flat_length = sqrt(max(1.0f - up * up, 0.0f) /
-                             max(to.x * to.x + to.z * to.z, 1e-12f));
-    float cos_gamma = to.x * flat_length * sky.to_sun.x + up * sky.to_sun.y +
-                      to.z * flat_length * sky.to_sun.z;
-    float gamma = arccos_shared(cos_gamma);
-    float luminance = sky.zenith.x * perez(sky.a.x, sky.b.x, sky.c.x, sky.d.x, sky.e.x, up, gamma);
-    float x = sky.zenith.y * perez(sky.a.y, sky.b.y, sky.c.y, sky.d.y, sky.e.y, up, gamma);
-    float y = sky.zenith.z * perez(sky.a.z, sky.b.z, sky.c.z, sky.d.z, sky.e.z, up, gamma);
-    vec3 rgb = srgb_from_xyY(luminance, x, y);
-    return vec3(max(rgb.x, 0.0f), max(rgb.y, 0.0f), max(rgb.z, 0.0f));
+float up = max(to.y, 0.01f);
+float flat_length = sqrt(max(1.0f - up * up, 0.0f) /
+max(to.x * to.x + to.z * to.z, 1e-12f));
+float cos_gamma = to.x * flat_length * sky.to_sun.x + up * sky.to_sun.y +
+to.z * flat_length * sky.to_sun.z;
+float gamma = arccos_shared(cos_gamma);
+float luminance = sky.zenith.x * perez(sky.a.x, sky.b.x, sky.c.x, sky.d.x, sky.e.x, up, gamma);
+float x = sky.zenith.y * perez(sky.a.y, sky.b.y, sky.c.y, sky.d.y, sky.e.y, up, gamma);
+float y = sky.zenith.z * perez(sky.a.z, sky.b.z, sky.c.z, sky.d.z, sky.e.z, up, gamma);
+vec3 rgb = srgb_from_xyY(luminance, x, y);
+return vec3(max(rgb.x, 0.0f), max(rgb.y, 0.0f), max(rgb.z, 0.0f));
 }
 float hash_unit(uint x, uint y, uint z) {
-    uint h = x * 73856093u ^ y * 19349663u ^ z * 83492791u;
-    h = h ^ (h >> 16u);
-    h = h * 2246822519u;
-    h = h ^ (h >> 13u);
-    h = h * 3266489917u;
-    h = h ^ (h >> 16u);
-    return float(h >> 8u) * (1.0f / 16777216.0f);
+uint h = x * 73856093u ^ y * 19349663u ^ z * 83492791u;
+h = h ^ (h >> 16u);
+h = h * 2246822519u;
+h = h ^ (h >> 13u);
+h = h * 3266489917u;
+h = h ^ (h >> 16u);
+return float(h >> 8u) * (1.0f / 16777216.0f);
 }
 float value_noise(float x, float y, float z, uint period) {
-    float fx = floor(x);
-    float fy = floor(y);
-    float fz = floor(z);
-    float tx = x - fx;
-    float ty = y - fy;
-    float tz = z - fz;
-    tx = tx * tx * (3.0f - 2.0f * tx);
-    ty = ty * ty * (3.0f - 2.0f * ty);
-    tz = tz * tz * (3.0f - 2.0f * tz);
-    uint x0 = uint(int(fx) + 1048576) % period;
-    uint x1 = (x0 + 1u) % period;
-    uint y0 = uint(int(fy) + 1048576);
-    uint z0 = uint(int(fz) + 1048576);
-    float n00 = mix(hash_unit(x0, y0, z0), hash_unit(x1, y0, z0), tx);
-    float n10 = mix(hash_unit(x0, y0 + 1u, z0), hash_unit(x1, y0 + 1u, z0), tx);
-    float n01 = mix(hash_unit(x0, y0, z0 + 1u), hash_unit(x1, y0, z0 + 1u), tx);
-    float n11 = mix(hash_unit(x0, y0 + 1u, z0 + 1u), hash_unit(x1, y0 + 1u, z0 + 1u), tx);
-    return mix(mix(n00, n10, ty), mix(n01, n11, ty), tz);
+float fx = floor(x);
+float fy = floor(y);
+float fz = floor(z);
+float tx = x - fx;
+float ty = y - fy;
+float tz = z - fz;
+tx = tx * tx * (3.0f - 2.0f * tx);
+ty = ty * ty * (3.0f - 2.0f * ty);
+tz = tz * tz * (3.0f - 2.0f * tz);
+uint x0 = uint(int(fx) + 1048576) % period;
+uint x1 = (x0 + 1u) % period;
+uint y0 = uint(int(fy) + 1048576);
+uint z0 = uint(int(fz) + 1048576);
+float n00 = mix(hash_unit(x0, y0, z0), hash_unit(x1, y0, z0), tx);
+float n10 = mix(hash_unit(x0, y0 + 1u, z0), hash_unit(x1, y0 + 1u, z0), tx);
+float n01 = mix(hash_unit(x0, y0, z0 + 1u), hash_unit(x1, y0, z0 + 1u), tx);
+float n11 = mix(hash_unit(x0, y0 + 1u, z0 + 1u), hash_unit(x1, y0 + 1u, z0 + 1u), tx);
+return mix(mix(n00, n10, ty), mix(n01, n11, ty), tz);
 }
 vec3 ambient_light(vec4 h0, vec4 h1, vec4 h2, vec4 h3, vec3 n) {
-    return vec3(max(h0.x + h1.x * n.x + h2.x * n.y + h3.x * n.z, 0.0f),
-                max(h0.y + h1.y * n.x + h2.y * n.y + h3.y * n.z, 0.0f),
-                max(h0.z + h1.z * n.x + h2.z * n.y + h3.z * n.z, 0.0f));
+return vec3(max(h0.x + h1.x * n.x + h2.x * n.y + h3.x * n.z, 0.0f),
+max(h0.y + h1.y * n.x + h2.y * n.y + h3.y * n.z, 0.0f),
+max(h0.z + h1.z * n.x + h2.z * n.y + h3.z * n.z, 0.0f));
 }
 vec3 lit(vec3 albedo, vec3 n, daylight_sky sky, float sun, vec3 ambient) {
-    float facing = max(n.x * sky.to_sun.x + n.y * sky.to_sun.y + n.z * sky.to_sun.z, 0.0f) * sun;
-    return vec3(albedo.x * (ambient.x + sky.sunlight.x * facing),
-                albedo.y * (ambient.y + sky.sunlight.y * facing),
-                albedo.z * (ambient.z + sky.sunlight.z * facing));
+float facing = max(n.x * sky.to_sun.x + n.y * sky.to_sun.y + n.z * sky.to_sun.z, 0.0f) * sun;
+return vec3(albedo.x * (ambient.x + sky.sunlight.x * facing),
+albedo.y * (ambient.y + sky.sunlight.y * facing),
+albedo.z * (ambient.z + sky.sunlight.z * facing));
 }
 float bark_height(float u, float v, uint cells) {
-    float around = u * float(cells);
-    float warp = value_noise(around * 0.5f, v * 3.0f, 7.0f, max(cells / 2u, 1u));
-    float furrow = value_noise(around + 2.0f * warp, v * 6.0f, 0.0f, cells);
-    float fine = value_noise(around * 3.0f, v * 24.0f, 3.0f, cells * 3u);
-    return 0.7f * furrow + 0.3f * fine;
+float around = u * float(cells);
+float warp = value_noise(around * 0.5f, v * 3.0f, 7.0f, max(cells / 2u, 1u));
+float furrow = value_noise(around + 2.0f * warp, v * 6.0f, 0.0f, cells);
+float fine = value_noise(around * 3.0f, v * 24.0f, 3.0f, cells * 3u);
+return 0.7f * furrow + 0.3f * fine;
 }
 vec3 bark_albedo(float height) {
-    return vec3(mix(0.10f, 0.34f, height), mix(0.075f, 0.27f, height), mix(0.055f, 0.20f, height));
+return vec3(mix(0.10f, 0.34f, height), mix(0.075f, 0.27f, height), mix(0.055f, 0.20f, height));
 }
 vec3 grass_albedo(float x, float z) {
-    float wide = value_noise(x * 0.13f, z * 0.13f, 1.0f, 2097152u);
-    float middle = value_noise(x * 0.9f, z * 0.9f, 2.0f, 2097152u);
-    float fine = value_noise(x * 9.0f, z * 9.0f, 5.0f, 2097152u);
-    float straw = clamp(wide * 1.3f - 0.35f + 0.3f * middle, 0.0f, 1.0f);
-    float shade = 0.55f + 0.55f * fine + 0.25f * middle;
-    return vec3(mix(0.075f, 0.17f, straw) * shade, mix(0.105f, 0.155f, straw) * shade,
-                mix(0.030f, 0.065f, straw) * shade);
+float wide = value_noise(x * 0.13f, z * 0.13f, 1.0f, 2097152u);
+float middle = value_noise(x * 0.9f, z * 0.9f, 2.0f, 2097152u);
+float fine = value_noise(x * 9.0f, z * 9.0f, 5.0f, 2097152u);
+float straw = clamp(wide * 1.3f - 0.35f + 0.3f * middle, 0.0f, 1.0f);
+float shade = 0.55f + 0.55f * fine + 0.25f * middle;
+return vec3(mix(0.075f, 0.17f, straw) * shade, mix(0.105f, 0.155f, straw) * shade,
+mix(0.030f, 0.065f, straw) * shade);
 }
 float haze(float distance) {
-    return 1.0f - exp_shared(-min(distance, 30000.0f) * (1.0f / 2500.0f));
+return 1.0f - exp_shared(-min(distance, 30000.0f) * (1.0f / 2500.0f));
 }
 float srgb_encode(float x) {
-    float c = clamp(x, 0.0f, 1.0f);
-    return c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 0.41666667f) - 0.055f;
+float c = clamp(x, 0.0f, 1.0f);
+return c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 0.41666667f) - 0.055f;
 }
 float display(float x) {
-    return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
+return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
 }
 float exp_minus(float x)
 {
-    float within = min(x, 87.0f);
-    float halvings = floor(within * 1.44269504f + 0.5f);
-    float r = halvings * 0.693145752f - within;
-    r = r + halvings * 1.42860677e-6f;
-    float p = 1.0f + r * (1.0f / 7.0f);
-    p = 1.0f + r * (1.0f / 6.0f) * p;
-    p = 1.0f + r * (1.0f / 5.0f) * p;
-    p = 1.0f + r * (1.0f / 4.0f) * p;
-    p = 1.0f + r * (1.0f / 3.0f) * p;
-    p = 1.0f + r * (1.0f / 2.0f) * p;
-    p = 1.0f + r * p;
-    int exponent = 127 - int(halvings);
-    return x < 87.0f ? p * intBitsToFloat(exponent * 8388608) : 0.0f;
+float within = min(x, 87.0f);
+float halvings = floor(within * 1.44269504f + 0.5f);
+float r = halvings * 0.693145752f - within;
+r = r + halvings * 1.42860677e-6f;
+float p = 1.0f + r * (1.0f / 7.0f);
+p = 1.0f + r * (1.0f / 6.0f) * p;
+p = 1.0f + r * (1.0f / 5.0f) * p;
+p = 1.0f + r * (1.0f / 4.0f) * p;
+p = 1.0f + r * (1.0f / 3.0f) * p;
+p = 1.0f + r * (1.0f / 2.0f) * p;
+p = 1.0f + r * p;
+int exponent = 127 - int(halvings);
+return x < 87.0f ? p * intBitsToFloat(exponent * 8388608) : 0.0f;
 }
 float one_minus_exp(float x)
 {
-    float p = 1.0f - x * (1.0f / 9.0f);
-    p = 1.0f - x * (1.0f / 8.0f) * p;
-    p = 1.0f - x * (1.0f / 7.0f) * p;
-    p = 1.0f - x * (1.0f / 6.0f) * p;
-    p = 1.0f - x * (1.0f / 5.0f) * p;
-    p = 1.0f - x * (1.0f / 4.0f) * p;
-    p = 1.0f - x * (1.0f / 3.0f) * p;
-    p = 1.0f - x * (1.0f / 2.0f) * p;
-    return x < 0.5f ? x * p : 1.0f - exp_minus(x);
+float p = 1.0f - x * (1.0f / 9.0f);
+p = 1.0f - x * (1.0f / 8.0f) * p;
+p = 1.0f - x * (1.0f / 7.0f) * p;
+p = 1.0f - x * (1.0f / 6.0f) * p;
+p = 1.0f - x * (1.0f / 5.0f) * p;
+p = 1.0f - x * (1.0f / 4.0f) * p;
+p = 1.0f - x * (1.0f / 3.0f) * p;
+p = 1.0f - x * (1.0f / 2.0f) * p;
+return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
 float log_of_sum(float sum, float less_one)
 {
-    float twos = 0.0f;
-    float less = less_one;
-    if (less_one < -0.25f || less_one > 0.4f) {
-        int bits = floatBitsToInt(max(sum, 1.2e-38f));
-        int power = (bits - 0x3f3504f3) >> 23;
-        less = intBitsToFloat(bits - power * 8388608) - 1.0f;
-        twos = float(power);
-    }
-    float s = less / (2.0f + less);
-    float s2 = s * s;
-    float p = s2 * (1.0f / 11.0f) + 1.0f / 9.0f;
-    p = s2 * p + 1.0f / 7.0f;
-    p = s2 * p + 1.0f / 5.0f;
-    p = s2 * p + 1.0f / 3.0f;
-    p = s2 * p + 1.0f;
-    return 2.0f * s * p + twos * 0.693147181f;
+float twos = 0.0f;
+float less = less_one;
+if (less_one < -0.25f || less_one > 0.4f) {
+int bits = floatBitsToInt(max(sum, 1.2e-38f));
+int power = (bits - 0x3f3504f3) >> 23;
+less = intBitsToFloat(bits - power * 8388608) - 1.0f;
+twos = float(power);
+}
+float s = less / (2.0f + less);
+float s2 = s * s;
+float p = s2 * (1.0f / 11.0f) + 1.0f / 9.0f;
+p = s2 * p + 1.0f / 7.0f;
+p = s2 * p + 1.0f / 5.0f;
+p = s2 * p + 1.0f / 3.0f;
+p = s2 * p + 1.0f;
+return 2.0f * s * p + twos * 0.693147181f;
 }
 float gaussian_above(float u)
 {
-    float x = abs(u) * 0.707106781f;
-    float t = 1.0f / (1.0f + 0.3275911f * x);
-    float p = 1.061405429f * t - 1.453152027f;
-    p = p * t + 1.421413741f;
-    p = p * t - 0.284496736f;
-    p = p * t + 0.254829592f;
-    float tail = 0.5f * (p * t * exp_minus(x * x));
-    return u < 0.0f ? 1.0f - tail : tail;
+float x = abs(u) * 0.707106781f;
+float t = 1.0f / (1.0f + 0.3275911f * x);
+float p = 1.061405429f * t - 1.453152027f;
+p = p * t + 1.421413741f;
+p = p * t - 0.284496736f;
+p = p * t + 0.254829592f;
+float tail = 0.5f * (p * t * exp_minus(x * x));
+return u < 0.0f ? 1.0f - tail : tail;
 }
 vec3 cells_of(light_grid grid, vec3 place)
 {
-    float px = place.x - grid.anchor.x;
-    float py = place.y - grid.anchor.y;
-    float pz = place.z - grid.anchor.z;
-    return vec3(grid.row_x.x * px + grid.row_x.y * py + grid.row_x.z * pz + grid.row_x.w,
-                grid.row_y.x * px + grid.row_y.y * py + grid.row_y.z * pz + grid.row_y.w,
-                grid.row_z.x * px + grid.row_z.y * py + grid.row_z.z * pz + grid.row_z.w);
+float px = place.x - grid.anchor.x;
+float py = place.y - grid.anchor.y;
+float pz = place.z - grid.anchor.z;
+return vec3(grid.row_x.x * px + grid.row_x.y * py + grid.row_x.z * pz + grid.row_x.w,
+grid.row_y.x * px + grid.row_y.y * py + grid.row_y.z * pz + grid.row_y.w,
+grid.row_z.x * px + grid.row_z.y * py + grid.row_z.z * pz + grid.row_z.w);
 }
 vec3 place_of(light_grid grid, vec3 cells)
 {
-    float x = (cells.x - grid.row_x.w) * grid.voxel.x * grid.voxel.x;
-    float y = (cells.y - grid.row_y.w) * grid.voxel.y * grid.voxel.y;
-    float z = (cells.z - grid.row_z.w) * grid.voxel.z * grid.voxel.z;
-    return vec3(
-        grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
-        grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
-        grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
+float x = (cells.x - grid.row_x.w) * grid.voxel.x * grid.voxel.x;
+float y = (cells.y - grid.row_y.w) * grid.voxel.y * grid.voxel.y;
+float z = (cells.z - grid.row_z.w) * grid.voxel.z * grid.voxel.z;
+return vec3(
+grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
+grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
+grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
-    float r2 = p.radius * p.radius;
-    if (d2 >= r2) {
-        return 0.0f;
-    }
-    float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    float on = p.albedo * forward * tau;
-    if (light == 2u && on > 0.0f) {
-        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
-    }
-    return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+float r2 = p.radius * p.radius;
+if (d2 >= r2) {
+return 0.0f;
+}
+float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float on = p.albedo * forward * tau;
+if (light == 2u && on > 0.0f) {
+return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
+}
+return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
 int top_row(float y, float radius)
 {
-    return int(ceil(y + radius - 0.5f)) - 1;
+return int(ceil(y + radius - 0.5f)) - 1;
 }
 int bottom_row(float y, float radius)
 {
-    return int(floor(y - radius - 0.5f));
+return int(floor(y - radius - 0.5f));
 }
 float part_above(uint profile, int row, float y, float radius, float sigmas)
 {
-    if (row > top_row(y, radius)) {
-        return 0.0f;
-    }
-    if (profile == 0u || row <= bottom_row(y, radius)) {
-        return 1.0f;
-    }
-    return gaussian_above((float(row) + 0.5f - y) / radius * sigmas);
+if (row > top_row(y, radius)) {
+return 0.0f;
+}
+if (profile == 0u || row <= bottom_row(y, radius)) {
+return 1.0f;
+}
+return gaussian_above((float(row) + 0.5f - y) / radius * sigmas);
 }
 int quanta(float amount)
 {
-    return int(floor(amount + 0.5f));
+return int(floor(amount + 0.5f));
 }
 vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
-    vec3 cells = cells_of(grid, place);
-    return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
+vec3 cells = cells_of(grid, place);
+return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
+return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float country_noise(float x, float z, float size, float layer, float far) {
-    float seen = clamp(2.0f - far / (300.0f * size), 0.0f, 1.0f);
-    if (seen == 0.0f) {
-        return 0.5f;
-    }
-    float noise = value_noise(x / size, z / size, layer, 2097152u);
-    return 0.5f + (noise - 0.5f) * seen;
+float seen = clamp(2.0f - far / (300.0f * size), 0.0f, 1.0f);
+if (seen == 0.0f) {
+return 0.5f;
+}
+float noise = value_noise(x / size, z / size, layer, 2097152u);
+return 0.5f + (noise - 0.5f) * seen;
 }
 vec3 country_albedo(float x, float z, float far) {
-    float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
-    float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
-    float fine = country_noise(x, z, 22.0f, 4.0f, far);
-    float grain = country_noise(x, z, 3.5f, 5.0f, far);
-    float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
-    float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
-    float shade = 0.5f + 0.5f * fine + 0.5f * grain;
-    return vec3(mix(mix(0.095f, 0.190f, straw), 0.036f, trees) * shade,
-                mix(mix(0.125f, 0.165f, straw), 0.052f, trees) * shade,
-                mix(0.042f + 0.03f * straw, 0.024f, trees) * shade);
+float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
+float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
+float fine = country_noise(x, z, 22.0f, 4.0f, far);
+float grain = country_noise(x, z, 3.5f, 5.0f, far);
+float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
+float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
+float shade = 0.5f + 0.5f * fine + 0.5f * grain;
+return vec3(mix(mix(0.095f, 0.190f, straw), 0.036f, trees) * shade,
+mix(mix(0.125f, 0.165f, straw), 0.052f, trees) * shade,
+mix(0.042f + 0.03f * straw, 0.024f, trees) * shade);
 }
 struct irradiance_grid {
-    vec4 low;      // xyz: place of the first point, m
-    vec4 per_step; // xyz: 1 / m from a point to the next
-    vec4 points;   // xyz: their numbers along the axes, 2 or more
+vec4 low;
+vec4 per_step;
+vec4 points;
 };
 vec3 irradiance_texel(irradiance_grid grid, vec3 place, float coefficient)
 {
-    const float apart = 0.001953125f;
-    float x = clamp((place.x - grid.low.x) * grid.per_step.x, 0.0f, grid.points.x - 1.0f);
-    float y = clamp((place.y - grid.low.y) * grid.per_step.y, apart, grid.points.y - 1.0f - apart);
-    float z = clamp((place.z - grid.low.z) * grid.per_step.z, 0.0f, grid.points.z - 1.0f);
-    return vec3((x + 0.5f) / grid.points.x,
-                (coefficient * grid.points.y + y + 0.5f) / (12.0f * grid.points.y),
-                (z + 0.5f) / grid.points.z);
+const float apart = 0.001953125f;
+float x = clamp((place.x - grid.low.x) * grid.per_step.x, 0.0f, grid.points.x - 1.0f);
+float y = clamp((place.y - grid.low.y) * grid.per_step.y, apart, grid.points.y - 1.0f - apart);
+float z = clamp((place.z - grid.low.z) * grid.per_step.z, 0.0f, grid.points.z - 1.0f);
+return vec3((x + 0.5f) / grid.points.x,
+(coefficient * grid.points.y + y + 0.5f) / (12.0f * grid.points.y),
+(z + 0.5f) / grid.points.z);
 }
 float irradiance_of_color(vec4 c, vec3 normal)
 {
-    return max(0.886227f * c.x +
-                   1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x),
-               0.0f);
+return max(0.886227f * c.x +
+1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x),
+0.0f);
 }
 vec3 irradiance_of(vec4 red, vec4 green, vec4 blue, vec3 normal)
 {
-    return vec3(irradiance_of_color(red, normal), irradiance_of_color(green, normal),
-                irradiance_of_color(blue, normal));
+return vec3(irradiance_of_color(red, normal), irradiance_of_color(green, normal),
+irradiance_of_color(blue, normal));
 }
 struct surroundings_record {
-    light_grid clouds;        // where the volume of the sun's attenuation by clouds lies
-    irradiance_grid gathered; // and the volume of gathered light
-    float cloud_shadow;       // how much of the clouds' shadow falls: 0 (none, and the volume is not
-    float air;                // 1/m, extinction of the air up to the eye
-    float reserved0;
-    float reserved1;
+light_grid clouds;
+irradiance_grid gathered;
+float cloud_shadow;
+float air;
+float reserved0;
+float reserved1;
 };
 float meadow_cloud_light(surroundings_record around, float attenuation) {
-    return mix(1.0f, cloud_light(attenuation), around.cloud_shadow);
+return mix(1.0f, cloud_light(attenuation), around.cloud_shadow);
 }
 vec3 meadow_lit(vec3 albedo, vec3 n, daylight_sky sky, float sun, vec3 irradiance) {
-    return lit(albedo, n, sky, sun, irradiance * 0.318309886f);
+return lit(albedo, n, sky, sun, irradiance * 0.318309886f);
 }
 vec3 meadow_through_air(surroundings_record around, daylight_sky sky, vec3 light, vec3 away) {
-    float distance = sqrt(away.x * away.x + away.y * away.y + away.z * away.z);
-    vec3 air = sky_radiance(sky, away * (1.0f / max(distance, 1e-6f)));
-    return mix(light, air, one_minus_exp(around.air * distance));
+float distance = sqrt(away.x * away.x + away.y * away.y + away.z * away.z);
+vec3 air = sky_radiance(sky, away * (1.0f / max(distance, 1e-6f)));
+return mix(light, air, one_minus_exp(around.air * distance));
 }
 vec3 meadow_albedo(float x, float z, float distance) {
-    float t = clamp((distance - 60.0f) * (1.0f / 340.0f), 0.0f, 1.0f);
-    float distant = t * t * (3.0f - 2.0f * t);
-    if (distant == 0.0f) {
-        return grass_albedo(x, z);
-    }
-    vec3 country = country_albedo(x, z, distance);
-    return distant == 1.0f ? country : mix(grass_albedo(x, z), country, distant);
+float t = clamp((distance - 60.0f) * (1.0f / 340.0f), 0.0f, 1.0f);
+float distant = t * t * (3.0f - 2.0f * t);
+if (distant == 0.0f) {
+return grass_albedo(x, z);
+}
+vec3 country = country_albedo(x, z, distance);
+return distant == 1.0f ? country : mix(grass_albedo(x, z), country, distant);
 }
 struct scene_record {
-    mat4 to_clip;
-    mat4 from_clip;
-    mat4 to_shadow;
-    vec4 camera;
-    vec4 shadow;
-    daylight_sky sky;
-    vec4 ambient[4];
+mat4 to_clip;
+mat4 from_clip;
+mat4 to_shadow;
+vec4 camera;
+vec4 shadow;
+daylight_sky sky;
+vec4 ambient[4];
 };
 #ifdef SKYBARK_FRAGMENT_STAGE
 #ifdef KERNEL_IMAGES
 float sun_at(scene_record scene, vec3 position, vec3 normal) {
-    vec3 raised = position + normal * (scene.shadow.x * scene.shadow.z);
-    vec4 p = scene.to_shadow * vec4(raised, 1.0);
-    vec2 texel = vec2(p.x * 0.5 + 0.5, 0.5 - p.y * 0.5) / scene.shadow.y - 0.5;
-    ivec2 size = textureSize(kernel_images[0], 0);
-    vec2 corner = floor(texel);
-    vec2 part = texel - corner;
-    float lit_texels = 0.0;
-    for (int y = -1; y <= 2; ++y) {
-        for (int x = -1; x <= 2; ++x) {
-            ivec2 at = ivec2(corner) + ivec2(x, y);
-            float wx = x == -1 ? 1.0 - part.x : (x == 2 ? part.x : 1.0);
-            float wy = y == -1 ? 1.0 - part.y : (y == 2 ? part.y : 1.0);
-            bool inside = at.x >= 0 && at.y >= 0 && at.x < size.x && at.y < size.y;
-            float depth = inside ? texelFetch(kernel_images[0], at, 0).r : 1.0;
-            lit_texels += min(p.z, 1.0) <= depth ? wx * wy : 0.0;
-        }
-    }
-    return lit_texels / 9.0;
+vec3 raised = position + normal * (scene.shadow.x * scene.shadow.z);
+vec4 p = scene.to_shadow * vec4(raised, 1.0);
+vec2 texel = vec2(p.x * 0.5 + 0.5, 0.5 - p.y * 0.5) / scene.shadow.y - 0.5;
+ivec2 size = textureSize(kernel_images[0], 0);
+vec2 corner = floor(texel);
+vec2 part = texel - corner;
+float lit_texels = 0.0;
+for (int y = -1; y <= 2; ++y) {
+for (int x = -1; x <= 2; ++x) {
+ivec2 at = ivec2(corner) + ivec2(x, y);
+float wx = x == -1 ? 1.0 - part.x : (x == 2 ? part.x : 1.0);
+float wy = y == -1 ? 1.0 - part.y : (y == 2 ? part.y : 1.0);
+bool inside = at.x >= 0 && at.y >= 0 && at.x < size.x && at.y < size.y;
+float depth = inside ? texelFetch(kernel_images[0], at, 0).r : 1.0;
+lit_texels += min(p.z, 1.0) <= depth ? wx * wy : 0.0;
+}
+}
+return lit_texels / 9.0;
 }
 #endif
 #endif
@@ -514,58 +514,58 @@ layout(std430, binding = 2) readonly buffer around_buffer { surroundings_record 
 layout(std430, binding = 3) readonly buffer irradiance_buffer { vec4 irradiance[]; };
 #ifdef SKYBARK_FRAGMENT_STAGE
 float sun_behind_clouds(vec3 place) {
-    if (!(around.cloud_shadow > 0.0)) {
-        return 1.0;
-    }
-    vec3 at = cloud_texel(around.clouds, vec3(textureSize(kernel_volumes[0], 0)), place);
-    return meadow_cloud_light(around, textureLod(kernel_volumes[0], at, 0.0).x);
+if (!(around.cloud_shadow > 0.0)) {
+return 1.0;
+}
+vec3 at = cloud_texel(around.clouds, vec3(textureSize(kernel_volumes[0], 0)), place);
+return meadow_cloud_light(around, textureLod(kernel_volumes[0], at, 0.0).x);
 }
 #if KERNEL_VOLUMES > 1
 struct gathered_around {
-    vec4 red;
-    vec4 green;
-    vec4 blue;
+vec4 red;
+vec4 green;
+vec4 blue;
 };
 float gathered_coefficient(vec3 place, float k) {
-    return textureLod(kernel_volumes[1], irradiance_texel(around.gathered, place, k), 0.0).x;
+return textureLod(kernel_volumes[1], irradiance_texel(around.gathered, place, k), 0.0).x;
 }
 vec4 gathered_color(vec3 place, float first) {
-    return vec4(gathered_coefficient(place, first), gathered_coefficient(place, first + 1.0),
-                gathered_coefficient(place, first + 2.0), gathered_coefficient(place, first + 3.0));
+return vec4(gathered_coefficient(place, first), gathered_coefficient(place, first + 1.0),
+gathered_coefficient(place, first + 2.0), gathered_coefficient(place, first + 3.0));
 }
 gathered_around gathered_at(vec3 place) {
-    return gathered_around(gathered_color(place, 0.0), gathered_color(place, 4.0),
-                           gathered_color(place, 8.0));
+return gathered_around(gathered_color(place, 0.0), gathered_color(place, 4.0),
+gathered_color(place, 8.0));
 }
 vec3 gathered_irradiance(gathered_around light, vec3 normal) {
-    return irradiance_of(light.red, light.green, light.blue, normal);
+return irradiance_of(light.red, light.green, light.blue, normal);
 }
 #endif
 #endif
 #ifdef SKYBARK_VERTEX_STAGE
 vec4 kernel_vertex(uint index) {
-    vec4 position = vertices[3u * index];
-    varying_out[0] = vec4(position.xyz, 0.0);
-    varying_out[1] = vec4(vertices[3u * index + 1u].xyz, 0.0);
-    varying_out[2] = irradiance[uint(position.w)];
-    return scene.to_clip * vec4(position.xyz, 1.0);
+vec4 position = vertices[3u * index];
+varying_out[0] = vec4(position.xyz, 0.0);
+varying_out[1] = vec4(vertices[3u * index + 1u].xyz, 0.0);
+varying_out[2] = irradiance[uint(position.w)];
+return scene.to_clip * vec4(position.xyz, 1.0);
 }
 #endif
 #ifdef SKYBARK_FRAGMENT_STAGE
 bool kernel_fragment(vec2 pixel, bool front) {
-    vec3 position = varying_in[0].xyz;
-    vec3 normal = normalize(varying_in[1].xyz);
-    vec3 away = position - scene.camera.xyz;
-    vec3 albedo = meadow_albedo(position.x, position.z, length(away));
-    float sun = sun_at(scene, position, normal) * sun_behind_clouds(position);
-    vec3 light = meadow_lit(albedo, normal, scene.sky, sun, varying_in[2].xyz);
-    color_out = vec4(meadow_through_air(around, scene.sky, light, away), 1.0);
-    return true;
+vec3 position = varying_in[0].xyz;
+vec3 normal = normalize(varying_in[1].xyz);
+vec3 away = position - scene.camera.xyz;
+vec3 albedo = meadow_albedo(position.x, position.z, length(away));
+float sun = sun_at(scene, position, normal) * sun_behind_clouds(position);
+vec3 light = meadow_lit(albedo, normal, scene.sky, sun, varying_in[2].xyz);
+color_out = vec4(meadow_through_air(around, scene.sky, light, away), 1.0);
+return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl";
-    static constexpr std::string_view draw_frag = R"glsl(#version 450
+)glsl", 17643};
+    static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
 #define KERNEL_VARYINGS 3
@@ -586,15 +586,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -617,449 +617,449 @@ layout(binding = SKYBARK_VOLUME_BINDING) uniform sampler3D kernel_volumes[KERNEL
 layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_targets[KERNEL_TARGETS];
 #endif
 struct surface_vertex {
-    vec3 position;
-    float u;
-    vec3 normal;
-    float v;
-    vec4 tangent;
+vec3 position;
+float u;
+vec3 normal;
+float v;
+vec4 tangent;
 };
 struct branch_end {
-    vec3 position;
-    float radius;
-    vec4 orientation;
-    float path;
-    float slope;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+vec4 orientation;
+float path;
+float slope;
+float reserved0;
+float reserved1;
 };
 struct branch_segment {
-    uint start;
-    uint end;
-    uint caps;
-    uint reserved;
+uint start;
+uint end;
+uint caps;
+uint reserved;
 };
 struct segment_pose {
-    vec4 rotation;
-    vec3 base;
-    float reserved0;
-    vec3 shift;
-    float reserved1;
+vec4 rotation;
+vec3 base;
+float reserved0;
+vec3 shift;
+float reserved1;
 };
 struct end_carrier {
-    uint moved_by;
-    uint turned_by;
-    uint and_by;
-    uint reserved;
+uint moved_by;
+uint turned_by;
+uint and_by;
+uint reserved;
 };
 struct leaf {
-    vec3 position;
-    float width;
-    vec4 orientation;
-    float length;
-    uint carrier;
-    uint seed;
-    float fold;
+vec3 position;
+float width;
+vec4 orientation;
+float length;
+uint carrier;
+uint seed;
+float fold;
 };
 struct segment_load {
-    vec3 force;
-    float drag;
+vec3 force;
+float drag;
 };
 struct cloud_particle {
-    vec3 position;
-    float radius;
-    float optical_depth;
-    float albedo;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+float optical_depth;
+float albedo;
+float reserved0;
+float reserved1;
 };
 struct light_grid {
-    vec4 anchor;
-    vec4 row_x;
-    vec4 row_y;
-    vec4 row_z;
-    vec4 voxel;
+vec4 anchor;
+vec4 row_x;
+vec4 row_y;
+vec4 row_z;
+vec4 voxel;
 };
 struct gather_triangle {
-    vec3 a;
-    uint material;
-    vec3 b;
-    uint alpha;
-    vec3 c;
-    uint reserved;
+vec3 a;
+uint material;
+vec3 b;
+uint alpha;
+vec3 c;
+uint reserved;
 };
 struct gather_material {
-    vec3 diffuse;
-    uint two_sided;
-    vec3 emission;
-    float reserved0;
-    vec3 transmission;
-    float reserved1;
+vec3 diffuse;
+uint two_sided;
+vec3 emission;
+float reserved0;
+vec3 transmission;
+float reserved1;
 };
 struct gather_sample {
-    vec3 position;
-    float reserved0;
-    vec3 normal;
-    float reserved1;
+vec3 position;
+float reserved0;
+vec3 normal;
+float reserved1;
 };
 struct gather_hit {
-    float distance;
-    uint surface;
-    float u;
-    float v;
+float distance;
+uint surface;
+float u;
+float v;
 };
 struct ray_bundle {
-    vec4 centre;
-    vec4 right;
-    vec4 up;
-    vec4 direction;
+vec4 centre;
+vec4 right;
+vec4 up;
+vec4 direction;
 };
 struct patch_table {
-    uint front;
-    uint back;
-    uint rows;
-    uint reserved;
+uint front;
+uint back;
+uint rows;
+uint reserved;
 };
 struct daylight_sky {
-    vec4 a; // Perez' coefficients: x for Y, y for x, z for y
-    vec4 b;
-    vec4 c;
-    vec4 d;
-    vec4 e;
-    vec4 zenith;     // Y, x, y at the zenith over Perez' function there
-    vec4 to_sun;     // xyz: unit
-    vec4 sunlight;   // rgb: irradiance of a surface that faces the sun over pi
+vec4 a;
+vec4 b;
+vec4 c;
+vec4 d;
+vec4 e;
+vec4 zenith;
+vec4 to_sun;
+vec4 sunlight;
 };
 float exp_shared(float x) {
-    float s = x * (1.0f / 64.0f);
-    float p = 1.0f + s * (1.0f + s * (0.5f + s * (0.16666667f + s * (0.041666667f + s * 0.0083333333f))));
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    return p * p;
+float s = x * (1.0f / 64.0f);
+float p = 1.0f + s * (1.0f + s * (0.5f + s * (0.16666667f + s * (0.041666667f + s * 0.0083333333f))));
+p = p * p;
+p = p * p;
+p = p * p;
+p = p * p;
+p = p * p;
+return p * p;
 }
 float arccos_shared(float x) {
-    float c = clamp(x, -1.0f, 1.0f);
-    return atan(sqrt((1.0f - c) * (1.0f + c)), c);
+float c = clamp(x, -1.0f, 1.0f);
+return atan(sqrt((1.0f - c) * (1.0f + c)), c);
 }
 float perez(float a, float b, float c, float d, float e, float cos_zenith, float gamma) {
-    float cos_gamma = cos(gamma);
-    return (1.0f + a * exp_shared(b / cos_zenith)) *
-           (1.0f + c * exp_shared(d * gamma) + e * cos_gamma * cos_gamma);
+float cos_gamma = cos(gamma);
+return (1.0f + a * exp_shared(b / cos_zenith)) *
+(1.0f + c * exp_shared(d * gamma) + e * cos_gamma * cos_gamma);
 }
 vec3 srgb_from_xyY(float luminance, float x, float y) {
-    float X = luminance * x / y;
-    float Z = luminance * (1.0f - x - y) / y;
-    return vec3(3.2406f * X - 1.5372f * luminance - 0.4986f * Z,
-                -0.9689f * X + 1.8758f * luminance + 0.0415f * Z,
-                0.0557f * X - 0.2040f * luminance + 1.0570f * Z);
+float X = luminance * x / y;
+float Z = luminance * (1.0f - x - y) / y;
+return vec3(3.2406f * X - 1.5372f * luminance - 0.4986f * Z,
+-0.9689f * X + 1.8758f * luminance + 0.0415f * Z,
+0.0557f * X - 0.2040f * luminance + 1.0570f * Z);
 }
 vec3 sky_radiance(daylight_sky sky, vec3 to) {
-    float up = max(to.y, 0.01f);
-    float flat_length = sqrt(max(1.0f - up * up, 0.0f) /
-                             max(to.x * to.x + to.z * to.z, 1e-12f));
-    float cos_gamma = to.x * flat_length * sky.to_sun.x + up * sky.to_sun.y +
-                      to.z * flat_length * sky.to_sun.z;
-    float gamma = arccos_shared(cos_gamma);
-    float luminance = sky.zenith.x * perez(sky.a.x, sky.b.x, sky.c.x, sky.d.x, sky.e.x, up, gamma);
-    float x = sky.zenith.y * perez(sky.a.y, sky.b.y, sky.c.y, sky.d.y, sky.e.y, up, gamma);
-    float y = sky.zenith.z * perez(sky.a.z, sky.b.z, sky.c.z, sky.d.z, sky.e.z, up, gamma);
-    vec3 rgb = srgb_from_xyY(luminance, x, y);
-    return vec3(max(rgb.x, 0.0f), max(rgb.y, 0.0f), max(rgb.z, 0.0f));
+float up = max(to.y, 0.01f);
+float flat_length = sqrt(max(1.0f - up * up, 0.0f) /
+max(to.x * to.x + to.z * to.z, 1e-12f));
+float cos_gamma = to.x * flat_length * sky.to_sun.x + up * sky.to_sun.y +
+to.z * flat_length * sky.to_sun.z;
+float gamma = arccos_shared(cos_gamma);
+float luminance = sky.zenith.x * perez(sky.a.x, sky.b.x, sky.c.x, sky.d.x, sky.e.x, up, gamma);
+float x = sky.zenith.y * perez(sky.a.y, sky.b.y, sky.c.y, sky.d.y, sky.e.y, up, gamma);
+float y = sky.zenith.z * perez(sky.a.z, sky.b.z, sky.c.z, sky.d.z, sky.e.z, up, gamma);
+vec3 rgb = srgb_from_xyY(luminance, x, y);
+return vec3(max(rgb.x, 0.0f), max(rgb.y, 0.0f), max(rgb.z, 0.0f));
 }
 float hash_unit(uint x, uint y, uint z) {
-    uint h = x * 73856093u ^ y * 19349663u ^ z * 83492791u;
-    h = h ^ (h >> 16u);
-    h = h * 2246822519u;
-    h = h ^ (h >> 13u);
-    h = h * 3266489917u;
-    h = h ^ (h >> 16u);
-    return float(h >> 8u) * (1.0f / 16777216.0f);
+uint h = x * 73856093u ^ y * 19349663u ^ z * 83492791u;
+h = h ^ (h >> 16u);
+h = h * 2246822519u;
+h = h ^ (h >> 13u);
+h = h * 3266489917u;
+h = h ^ (h >> 16u);
+return float(h >> 8u) * (1.0f / 16777216.0f);
 }
 float value_noise(float x, float y, float z, uint period) {
-    float fx = floor(x);
-    float fy = floor(y);
-    float fz = floor(z);
-    float tx = x - fx;
-    float ty = y - fy;
-    float tz = z - fz;
-    tx = tx * tx * (3.0f - 2.0f * tx);
-    ty = ty * ty * (3.0f - 2.0f * ty);
-    tz = tz * tz * (3.0f - 2.0f * tz);
-    uint x0 = uint(int(fx) + 1048576) % period;
-    uint x1 = (x0 + 1u) % period;
-    uint y0 = uint(int(fy) + 1048576);
-    uint z0 = uint(int(fz) + 1048576);
-    float n00 = mix(hash_unit(x0, y0, z0), hash_unit(x1, y0, z0), tx);
-    float n10 = mix(hash_unit(x0, y0 + 1u, z0), hash_unit(x1, y0 + 1u, z0), tx);
-    float n01 = mix(hash_unit(x0, y0, z0 + 1u), hash_unit(x1, y0, z0 + 1u), tx);
-    float n11 = mix(hash_unit(x0, y0 + 1u, z0 + 1u), hash_unit(x1, y0 + 1u, z0 + 1u), tx);
-    return mix(mix(n00, n10, ty), mix(n01, n11, ty), tz);
+float fx = floor(x);
+float fy = floor(y);
+float fz = floor(z);
+float tx = x - fx;
+float ty = y - fy;
+float tz = z - fz;
+tx = tx * tx * (3.0f - 2.0f * tx);
+ty = ty * ty * (3.0f - 2.0f * ty);
+tz = tz * tz * (3.0f - 2.0f * tz);
+uint x0 = uint(int(fx) + 1048576) % period;
+uint x1 = (x0 + 1u) % period;
+uint y0 = uint(int(fy) + 1048576);
+uint z0 = uint(int(fz) + 1048576);
+float n00 = mix(hash_unit(x0, y0, z0), hash_unit(x1, y0, z0), tx);
+float n10 = mix(hash_unit(x0, y0 + 1u, z0), hash_unit(x1, y0 + 1u, z0), tx);
+float n01 = mix(hash_unit(x0, y0, z0 + 1u), hash_unit(x1, y0, z0 + 1u), tx);
+float n11 = mix(hash_unit(x0, y0 + 1u, z0 + 1u), hash_unit(x1, y0 + 1u, z0 + 1u), tx);
+return mix(mix(n00, n10, ty), mix(n01, n11, ty), tz);
 }
 vec3 ambient_light(vec4 h0, vec4 h1, vec4 h2, vec4 h3, vec3 n) {
-    return vec3(max(h0.x + h1.x * n.x + h2.x * n.y + h3.x * n.z, 0.0f),
-                max(h0.y + h1.y * n.x + h2.y * n.y + h3.y * n.z, 0.0f),
-                max(h0.z + h1.z * n.x + h2.z * n.y + h3.z * n.z, 0.0f));
+return vec3(max(h0.x + h1.x * n.x + h2.x * n.y + h3.x * n.z, 0.0f),
+max(h0.y + h1.y * n.x + h2.y * n.y + h3.y * n.z, 0.0f),
+max(h0.z + h1.z * n.x + h2.z * n.y + h3.z * n.z, 0.0f));
 }
 vec3 lit(vec3 albedo, vec3 n, daylight_sky sky, float sun, vec3 ambient) {
-    float facing = max(n.x * sky.to_sun.x + n.y * sky.to_sun.y + n.z * sky.to_sun.z, 0.0f) * sun;
-    return vec3(albedo.x * (ambient.x + sky.sunlight.x * facing),
-                albedo.y * (ambient.y + sky.sunlight.y * facing),
-                albedo.z * (ambient.z + sky.sunlight.z * facing));
+float facing = max(n.x * sky.to_sun.x + n.y * sky.to_sun.y + n.z * sky.to_sun.z, 0.0f) * sun;
+return vec3(albedo.x * (ambient.x + sky.sunlight.x * facing),
+albedo.y * (ambient.y + sky.sunlight.y * facing),
+albedo.z * (ambient.z + sky.sunlight.z * facing));
 }
 float bark_height(float u, float v, uint cells) {
-    float around = u * float(cells);
-    float warp = value_noise(around * 0.5f, v * 3.0f, 7.0f, max(cells / 2u, 1u));
-    float furrow = value_noise(around + 2.0f * warp, v * 6.0f, 0.0f, cells);
-    float fine = value_noise(around * 3.0f, v * 24.0f, 3.0f, cells * 3u);
-    return 0.7f * furrow + 0.3f * fine;
+float around = u * float(cells);
+float warp = value_noise(around * 0.5f, v * 3.0f, 7.0f, max(cells / 2u, 1u));
+float furrow = value_noise(around + 2.0f * warp, v * 6.0f, 0.0f, cells);
+float fine = value_noise(around * 3.0f, v * 24.0f, 3.0f, cells * 3u);
+return 0.7f * furrow + 0.3f * fine;
 }
 vec3 bark_albedo(float height) {
-    return vec3(mix(0.10f, 0.34f, height), mix(0.075f, 0.27f, height), mix(0.055f, 0.20f, height));
+return vec3(mix(0.10f, 0.34f, height), mix(0.075f, 0.27f, height), mix(0.055f, 0.20f, height));
 }
 vec3 grass_albedo(float x, float z) {
-    float wide = value_noise(x * 0.13f, z * 0.13f, 1.0f, 2097152u);
-    float middle = value_noise(x * 0.9f, z * 0.9f, 2.0f, 2097152u);
-    float fine = value_noise(x * 9.0f, z * 9.0f, 5.0f, 2097152u);
-    float straw = clamp(wide * 1.3f - 0.35f + 0.3f * middle, 0.0f, 1.0f);
-    float shade = 0.55f + 0.55f * fine + 0.25f * middle;
-    return vec3(mix(0.075f, 0.17f, straw) * shade, mix(0.105f, 0.155f, straw) * shade,
-                mix(0.030f, 0.065f, straw) * shade);
+float wide = value_noise(x * 0.13f, z * 0.13f, 1.0f, 2097152u);
+float middle = value_noise(x * 0.9f, z * 0.9f, 2.0f, 2097152u);
+float fine = value_noise(x * 9.0f, z * 9.0f, 5.0f, 2097152u);
+float straw = clamp(wide * 1.3f - 0.35f + 0.3f * middle, 0.0f, 1.0f);
+float shade = 0.55f + 0.55f * fine + 0.25f * middle;
+return vec3(mix(0.075f, 0.17f, straw) * shade, mix(0.105f, 0.155f, straw) * shade,
+mix(0.030f, 0.065f, straw) * shade);
 }
 float haze(float distance) {
-    return 1.0f - exp_shared(-min(distance, 30000.0f) * (1.0f / 2500.0f));
+return 1.0f - exp_shared(-min(distance, 30000.0f) * (1.0f / 2500.0f));
 }
 float srgb_encode(float x) {
-    float c = clamp(x, 0.0f, 1.0f);
-    return c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 0.41666667f) - 0.055f;
+float c = clamp(x, 0.0f, 1.0f);
+return c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 0.41666667f) - 0.055f;
 }
 float display(float x) {
-    return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
+return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
 }
 float exp_minus(float x)
 {
-    float within = min(x, 87.0f);
-    float halvings = floor(within * 1.44269504f + 0.5f);
-    float r = halvings * 0.693145752f - within;
-    r = r + halvings * 1.42860677e-6f;
-    float p = 1.0f + r * (1.0f / 7.0f);
-    p = 1.0f + r * (1.0f / 6.0f) * p;
-    p = 1.0f + r * (1.0f / 5.0f) * p;
-    p = 1.0f + r * (1.0f / 4.0f) * p;
-    p = 1.0f + r * (1.0f / 3.0f) * p;
-    p = 1.0f + r * (1.0f / 2.0f) * p;
-    p = 1.0f + r * p;
-    int exponent = 127 - int(halvings);
-    return x < 87.0f ? p * intBitsToFloat(exponent * 8388608) : 0.0f;
+float within = min(x, 87.0f);
+float halvings = floor(within * 1.44269504f + 0.5f);
+float r = halvings * 0.693145752f - within;
+r = r + halvings * 1.42860677e-6f;
+float p = 1.0f + r * (1.0f / 7.0f);
+p = 1.0f + r * (1.0f / 6.0f) * p;
+p = 1.0f + r * (1.0f / 5.0f) * p;
+p = 1.0f + r * (1.0f / 4.0f) * p;
+p = 1.0f + r * (1.0f / 3.0f) * p;
+p = 1.0f + r * (1.0f / 2.0f) * p;
+p = 1.0f + r * p;
+int exponent = 127 - int(halvings);
+return x < 87.0f ? p * intBitsToFloat(exponent * 8388608) : 0.0f;
 }
 float one_minus_exp(float x)
 {
-    float p = 1.0f - x * (1.0f / 9.0f);
-    p = 1.0f - x * (1.0f / 8.0f) * p;
-    p = 1.0f - x * (1.0f / 7.0f) * p;
-    p = 1.0f - x * (1.0f / 6.0f) * p;
-    p = 1.0f - x * (1.0f / 5.0f) * p;
-    p = 1.0f - x * (1.0f / 4.0f) * p;
-    p = 1.0f - x * (1.0f / 3.0f) * p;
-    p = 1.0f - x * (1.0f / 2.0f) * p;
-    return x < 0.5f ? x * p : 1.0f - exp_minus(x);
+float p = 1.0f - x * (1.0f / 9.0f);
+p = 1.0f - x * (1.0f / 8.0f) * p;
+p = 1.0f - x * (1.0f / 7.0f) * p;
+p = 1.0f - x * (1.0f / 6.0f) * p;
+p = 1.0f - x * (1.0f / 5.0f) * p;
+p = 1.0f - x * (1.0f / 4.0f) * p;
+p = 1.0f - x * (1.0f / 3.0f) * p;
+p = 1.0f - x * (1.0f / 2.0f) * p;
+return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
 float log_of_sum(float sum, float less_one)
 {
-    float twos = 0.0f;
-    float less = less_one;
-    if (less_one < -0.25f || less_one > 0.4f) {
-        int bits = floatBitsToInt(max(sum, 1.2e-38f));
-        int power = (bits - 0x3f3504f3) >> 23;
-        less = intBitsToFloat(bits - power * 8388608) - 1.0f;
-        twos = float(power);
-    }
-    float s = less / (2.0f + less);
-    float s2 = s * s;
-    float p = s2 * (1.0f / 11.0f) + 1.0f / 9.0f;
-    p = s2 * p + 1.0f / 7.0f;
-    p = s2 * p + 1.0f / 5.0f;
-    p = s2 * p + 1.0f / 3.0f;
-    p = s2 * p + 1.0f;
-    return 2.0f * s * p + twos * 0.693147181f;
+float twos = 0.0f;
+float less = less_one;
+if (less_one < -0.25f || less_one > 0.4f) {
+int bits = floatBitsToInt(max(sum, 1.2e-38f));
+int power = (bits - 0x3f3504f3) >> 23;
+less = intBitsToFloat(bits - power * 8388608) - 1.0f;
+twos = float(power);
+}
+float s = less / (2.0f + less);
+float s2 = s * s;
+float p = s2 * (1.0f / 11.0f) + 1.0f / 9.0f;
+p = s2 * p + 1.0f / 7.0f;
+p = s2 * p + 1.0f / 5.0f;
+p = s2 * p + 1.0f / 3.0f;
+p = s2 * p + 1.0f;
+return 2.0f * s * p + twos * 0.693147181f;
 }
 float gaussian_above(float u)
 {
-    float x = abs(u) * 0.707106781f;
-    float t = 1.0f / (1.0f + 0.3275911f * x);
-    float p = 1.061405429f * t - 1.453152027f;
-    p = p * t + 1.421413741f;
-    p = p * t - 0.284496736f;
-    p = p * t + 0.254829592f;
-    float tail = 0.5f * (p * t * exp_minus(x * x));
-    return u < 0.0f ? 1.0f - tail : tail;
+float x = abs(u) * 0.707106781f;
+float t = 1.0f / (1.0f + 0.3275911f * x);
+float p = 1.061405429f * t - 1.453152027f;
+p = p * t + 1.421413741f;
+p = p * t - 0.284496736f;
+p = p * t + 0.254829592f;
+float tail = 0.5f * (p * t * exp_minus(x * x));
+return u < 0.0f ? 1.0f - tail : tail;
 }
 vec3 cells_of(light_grid grid, vec3 place)
 {
-    float px = place.x - grid.anchor.x;
-    float py = place.y - grid.anchor.y;
-    float pz = place.z - grid.anchor.z;
-    return vec3(grid.row_x.x * px + grid.row_x.y * py + grid.row_x.z * pz + grid.row_x.w,
-                grid.row_y.x * px + grid.row_y.y * py + grid.row_y.z * pz + grid.row_y.w,
-                grid.row_z.x * px + grid.row_z.y * py + grid.row_z.z * pz + grid.row_z.w);
+float px = place.x - grid.anchor.x;
+float py = place.y - grid.anchor.y;
+float pz = place.z - grid.anchor.z;
+return vec3(grid.row_x.x * px + grid.row_x.y * py + grid.row_x.z * pz + grid.row_x.w,
+grid.row_y.x * px + grid.row_y.y * py + grid.row_y.z * pz + grid.row_y.w,
+grid.row_z.x * px + grid.row_z.y * py + grid.row_z.z * pz + grid.row_z.w);
 }
 vec3 place_of(light_grid grid, vec3 cells)
 {
-    float x = (cells.x - grid.row_x.w) * grid.voxel.x * grid.voxel.x;
-    float y = (cells.y - grid.row_y.w) * grid.voxel.y * grid.voxel.y;
-    float z = (cells.z - grid.row_z.w) * grid.voxel.z * grid.voxel.z;
-    return vec3(
-        grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
-        grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
-        grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
+float x = (cells.x - grid.row_x.w) * grid.voxel.x * grid.voxel.x;
+float y = (cells.y - grid.row_y.w) * grid.voxel.y * grid.voxel.y;
+float z = (cells.z - grid.row_z.w) * grid.voxel.z * grid.voxel.z;
+return vec3(
+grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
+grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
+grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
-    float r2 = p.radius * p.radius;
-    if (d2 >= r2) {
-        return 0.0f;
-    }
-    float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    float on = p.albedo * forward * tau;
-    if (light == 2u && on > 0.0f) {
-        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
-    }
-    return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+float r2 = p.radius * p.radius;
+if (d2 >= r2) {
+return 0.0f;
+}
+float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float on = p.albedo * forward * tau;
+if (light == 2u && on > 0.0f) {
+return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
+}
+return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
 int top_row(float y, float radius)
 {
-    return int(ceil(y + radius - 0.5f)) - 1;
+return int(ceil(y + radius - 0.5f)) - 1;
 }
 int bottom_row(float y, float radius)
 {
-    return int(floor(y - radius - 0.5f));
+return int(floor(y - radius - 0.5f));
 }
 float part_above(uint profile, int row, float y, float radius, float sigmas)
 {
-    if (row > top_row(y, radius)) {
-        return 0.0f;
-    }
-    if (profile == 0u || row <= bottom_row(y, radius)) {
-        return 1.0f;
-    }
-    return gaussian_above((float(row) + 0.5f - y) / radius * sigmas);
+if (row > top_row(y, radius)) {
+return 0.0f;
+}
+if (profile == 0u || row <= bottom_row(y, radius)) {
+return 1.0f;
+}
+return gaussian_above((float(row) + 0.5f - y) / radius * sigmas);
 }
 int quanta(float amount)
 {
-    return int(floor(amount + 0.5f));
+return int(floor(amount + 0.5f));
 }
 vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
-    vec3 cells = cells_of(grid, place);
-    return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
+vec3 cells = cells_of(grid, place);
+return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
+return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float country_noise(float x, float z, float size, float layer, float far) {
-    float seen = clamp(2.0f - far / (300.0f * size), 0.0f, 1.0f);
-    if (seen == 0.0f) {
-        return 0.5f;
-    }
-    float noise = value_noise(x / size, z / size, layer, 2097152u);
-    return 0.5f + (noise - 0.5f) * seen;
+float seen = clamp(2.0f - far / (300.0f * size), 0.0f, 1.0f);
+if (seen == 0.0f) {
+return 0.5f;
+}
+float noise = value_noise(x / size, z / size, layer, 2097152u);
+return 0.5f + (noise - 0.5f) * seen;
 }
 vec3 country_albedo(float x, float z, float far) {
-    float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
-    float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
-    float fine = country_noise(x, z, 22.0f, 4.0f, far);
-    float grain = country_noise(x, z, 3.5f, 5.0f, far);
-    float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
-    float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
-    float shade = 0.5f + 0.5f * fine + 0.5f * grain;
-    return vec3(mix(mix(0.095f, 0.190f, straw), 0.036f, trees) * shade,
-                mix(mix(0.125f, 0.165f, straw), 0.052f, trees) * shade,
-                mix(0.042f + 0.03f * straw, 0.024f, trees) * shade);
+float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
+float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
+float fine = country_noise(x, z, 22.0f, 4.0f, far);
+float grain = country_noise(x, z, 3.5f, 5.0f, far);
+float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
+float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
+float shade = 0.5f + 0.5f * fine + 0.5f * grain;
+return vec3(mix(mix(0.095f, 0.190f, straw), 0.036f, trees) * shade,
+mix(mix(0.125f, 0.165f, straw), 0.052f, trees) * shade,
+mix(0.042f + 0.03f * straw, 0.024f, trees) * shade);
 }
 struct irradiance_grid {
-    vec4 low;      // xyz: place of the first point, m
-    vec4 per_step; // xyz: 1 / m from a point to the next
-    vec4 points;   // xyz: their numbers along the axes, 2 or more
+vec4 low;
+vec4 per_step;
+vec4 points;
 };
 vec3 irradiance_texel(irradiance_grid grid, vec3 place, float coefficient)
 {
-    const float apart = 0.001953125f;
-    float x = clamp((place.x - grid.low.x) * grid.per_step.x, 0.0f, grid.points.x - 1.0f);
-    float y = clamp((place.y - grid.low.y) * grid.per_step.y, apart, grid.points.y - 1.0f - apart);
-    float z = clamp((place.z - grid.low.z) * grid.per_step.z, 0.0f, grid.points.z - 1.0f);
-    return vec3((x + 0.5f) / grid.points.x,
-                (coefficient * grid.points.y + y + 0.5f) / (12.0f * grid.points.y),
-                (z + 0.5f) / grid.points.z);
+const float apart = 0.001953125f;
+float x = clamp((place.x - grid.low.x) * grid.per_step.x, 0.0f, grid.points.x - 1.0f);
+float y = clamp((place.y - grid.low.y) * grid.per_step.y, apart, grid.points.y - 1.0f - apart);
+float z = clamp((place.z - grid.low.z) * grid.per_step.z, 0.0f, grid.points.z - 1.0f);
+return vec3((x + 0.5f) / grid.points.x,
+(coefficient * grid.points.y + y + 0.5f) / (12.0f * grid.points.y),
+(z + 0.5f) / grid.points.z);
 }
 float irradiance_of_color(vec4 c, vec3 normal)
 {
-    return max(0.886227f * c.x +
-                   1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x),
-               0.0f);
+return max(0.886227f * c.x +
+1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x),
+0.0f);
 }
 vec3 irradiance_of(vec4 red, vec4 green, vec4 blue, vec3 normal)
 {
-    return vec3(irradiance_of_color(red, normal), irradiance_of_color(green, normal),
-                irradiance_of_color(blue, normal));
+return vec3(irradiance_of_color(red, normal), irradiance_of_color(green, normal),
+irradiance_of_color(blue, normal));
 }
 struct surroundings_record {
-    light_grid clouds;        // where the volume of the sun's attenuation by clouds lies
-    irradiance_grid gathered; // and the volume of gathered light
-    float cloud_shadow;       // how much of the clouds' shadow falls: 0 (none, and the volume is not
-    float air;                // 1/m, extinction of the air up to the eye
-    float reserved0;
-    float reserved1;
+light_grid clouds;
+irradiance_grid gathered;
+float cloud_shadow;
+float air;
+float reserved0;
+float reserved1;
 };
 float meadow_cloud_light(surroundings_record around, float attenuation) {
-    return mix(1.0f, cloud_light(attenuation), around.cloud_shadow);
+return mix(1.0f, cloud_light(attenuation), around.cloud_shadow);
 }
 vec3 meadow_lit(vec3 albedo, vec3 n, daylight_sky sky, float sun, vec3 irradiance) {
-    return lit(albedo, n, sky, sun, irradiance * 0.318309886f);
+return lit(albedo, n, sky, sun, irradiance * 0.318309886f);
 }
 vec3 meadow_through_air(surroundings_record around, daylight_sky sky, vec3 light, vec3 away) {
-    float distance = sqrt(away.x * away.x + away.y * away.y + away.z * away.z);
-    vec3 air = sky_radiance(sky, away * (1.0f / max(distance, 1e-6f)));
-    return mix(light, air, one_minus_exp(around.air * distance));
+float distance = sqrt(away.x * away.x + away.y * away.y + away.z * away.z);
+vec3 air = sky_radiance(sky, away * (1.0f / max(distance, 1e-6f)));
+return mix(light, air, one_minus_exp(around.air * distance));
 }
 vec3 meadow_albedo(float x, float z, float distance) {
-    float t = clamp((distance - 60.0f) * (1.0f / 340.0f), 0.0f, 1.0f);
-    float distant = t * t * (3.0f - 2.0f * t);
-    if (distant == 0.0f) {
-        return grass_albedo(x, z);
-    }
-    vec3 country = country_albedo(x, z, distance);
-    return distant == 1.0f ? country : mix(grass_albedo(x, z), country, distant);
+float t = clamp((distance - 60.0f) * (1.0f / 340.0f), 0.0f, 1.0f);
+float distant = t * t * (3.0f - 2.0f * t);
+if (distant == 0.0f) {
+return grass_albedo(x, z);
+}
+vec3 country = country_albedo(x, z, distance);
+return distant == 1.0f ? country : mix(grass_albedo(x, z), country, distant);
 }
 struct scene_record {
-    mat4 to_clip;
-    mat4 from_clip;
-    mat4 to_shadow;
-    vec4 camera;
-    vec4 shadow;
-    daylight_sky sky;
-    vec4 ambient[4];
+mat4 to_clip;
+mat4 from_clip;
+mat4 to_shadow;
+vec4 camera;
+vec4 shadow;
+daylight_sky sky;
+vec4 ambient[4];
 };
 #ifdef SKYBARK_FRAGMENT_STAGE
 #ifdef KERNEL_IMAGES
 float sun_at(scene_record scene, vec3 position, vec3 normal) {
-    vec3 raised = position + normal * (scene.shadow.x * scene.shadow.z);
-    vec4 p = scene.to_shadow * vec4(raised, 1.0);
-    vec2 texel = vec2(p.x * 0.5 + 0.5, 0.5 - p.y * 0.5) / scene.shadow.y - 0.5;
-    ivec2 size = textureSize(kernel_images[0], 0);
-    vec2 corner = floor(texel);
-    vec2 part = texel - corner;
-    float lit_texels = 0.0;
-    for (int y = -1; y <= 2; ++y) {
-        for (int x = -1; x <= 2; ++x) {
-            ivec2 at = ivec2(corner) + ivec2(x, y);
-            float wx = x == -1 ? 1.0 - part.x : (x == 2 ? part.x : 1.0);
-            float wy = y == -1 ? 1.0 - part.y : (y == 2 ? part.y : 1.0);
-            bool inside = at.x >= 0 && at.y >= 0 && at.x < size.x && at.y < size.y;
-            float depth = inside ? texelFetch(kernel_images[0], at, 0).r : 1.0;
-            lit_texels += min(p.z, 1.0) <= depth ? wx * wy : 0.0;
-        }
-    }
-    return lit_texels / 9.0;
+vec3 raised = position + normal * (scene.shadow.x * scene.shadow.z);
+vec4 p = scene.to_shadow * vec4(raised, 1.0);
+vec2 texel = vec2(p.x * 0.5 + 0.5, 0.5 - p.y * 0.5) / scene.shadow.y - 0.5;
+ivec2 size = textureSize(kernel_images[0], 0);
+vec2 corner = floor(texel);
+vec2 part = texel - corner;
+float lit_texels = 0.0;
+for (int y = -1; y <= 2; ++y) {
+for (int x = -1; x <= 2; ++x) {
+ivec2 at = ivec2(corner) + ivec2(x, y);
+float wx = x == -1 ? 1.0 - part.x : (x == 2 ? part.x : 1.0);
+float wy = y == -1 ? 1.0 - part.y : (y == 2 ? part.y : 1.0);
+bool inside = at.x >= 0 && at.y >= 0 && at.x < size.x && at.y < size.y;
+float depth = inside ? texelFetch(kernel_images[0], at, 0).r : 1.0;
+lit_texels += min(p.z, 1.0) <= depth ? wx * wy : 0.0;
+}
+}
+return lit_texels / 9.0;
 }
 #endif
 #endif
@@ -1069,61 +1069,61 @@ layout(std430, binding = 2) readonly buffer around_buffer { surroundings_record 
 layout(std430, binding = 3) readonly buffer irradiance_buffer { vec4 irradiance[]; };
 #ifdef SKYBARK_FRAGMENT_STAGE
 float sun_behind_clouds(vec3 place) {
-    if (!(around.cloud_shadow > 0.0)) {
-        return 1.0;
-    }
-    vec3 at = cloud_texel(around.clouds, vec3(textureSize(kernel_volumes[0], 0)), place);
-    return meadow_cloud_light(around, textureLod(kernel_volumes[0], at, 0.0).x);
+if (!(around.cloud_shadow > 0.0)) {
+return 1.0;
+}
+vec3 at = cloud_texel(around.clouds, vec3(textureSize(kernel_volumes[0], 0)), place);
+return meadow_cloud_light(around, textureLod(kernel_volumes[0], at, 0.0).x);
 }
 #if KERNEL_VOLUMES > 1
 struct gathered_around {
-    vec4 red;
-    vec4 green;
-    vec4 blue;
+vec4 red;
+vec4 green;
+vec4 blue;
 };
 float gathered_coefficient(vec3 place, float k) {
-    return textureLod(kernel_volumes[1], irradiance_texel(around.gathered, place, k), 0.0).x;
+return textureLod(kernel_volumes[1], irradiance_texel(around.gathered, place, k), 0.0).x;
 }
 vec4 gathered_color(vec3 place, float first) {
-    return vec4(gathered_coefficient(place, first), gathered_coefficient(place, first + 1.0),
-                gathered_coefficient(place, first + 2.0), gathered_coefficient(place, first + 3.0));
+return vec4(gathered_coefficient(place, first), gathered_coefficient(place, first + 1.0),
+gathered_coefficient(place, first + 2.0), gathered_coefficient(place, first + 3.0));
 }
 gathered_around gathered_at(vec3 place) {
-    return gathered_around(gathered_color(place, 0.0), gathered_color(place, 4.0),
-                           gathered_color(place, 8.0));
+return gathered_around(gathered_color(place, 0.0), gathered_color(place, 4.0),
+gathered_color(place, 8.0));
 }
 vec3 gathered_irradiance(gathered_around light, vec3 normal) {
-    return irradiance_of(light.red, light.green, light.blue, normal);
+return irradiance_of(light.red, light.green, light.blue, normal);
 }
 #endif
 #endif
 #ifdef SKYBARK_VERTEX_STAGE
 vec4 kernel_vertex(uint index) {
-    vec4 position = vertices[3u * index];
-    varying_out[0] = vec4(position.xyz, 0.0);
-    varying_out[1] = vec4(vertices[3u * index + 1u].xyz, 0.0);
-    varying_out[2] = irradiance[uint(position.w)];
-    return scene.to_clip * vec4(position.xyz, 1.0);
+vec4 position = vertices[3u * index];
+varying_out[0] = vec4(position.xyz, 0.0);
+varying_out[1] = vec4(vertices[3u * index + 1u].xyz, 0.0);
+varying_out[2] = irradiance[uint(position.w)];
+return scene.to_clip * vec4(position.xyz, 1.0);
 }
 #endif
 #ifdef SKYBARK_FRAGMENT_STAGE
 bool kernel_fragment(vec2 pixel, bool front) {
-    vec3 position = varying_in[0].xyz;
-    vec3 normal = normalize(varying_in[1].xyz);
-    vec3 away = position - scene.camera.xyz;
-    vec3 albedo = meadow_albedo(position.x, position.z, length(away));
-    float sun = sun_at(scene, position, normal) * sun_behind_clouds(position);
-    vec3 light = meadow_lit(albedo, normal, scene.sky, sun, varying_in[2].xyz);
-    color_out = vec4(meadow_through_air(around, scene.sky, light, away), 1.0);
-    return true;
+vec3 position = varying_in[0].xyz;
+vec3 normal = normalize(varying_in[1].xyz);
+vec3 away = position - scene.camera.xyz;
+vec3 albedo = meadow_albedo(position.x, position.z, length(away));
+float sun = sun_at(scene, position, normal) * sun_behind_clouds(position);
+vec3 light = meadow_lit(albedo, normal, scene.sky, sun, varying_in[2].xyz);
+color_out = vec4(meadow_through_air(around, scene.sky, light, away), 1.0);
+return true;
 }
 #endif
 void main() {
-    if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
-        discard;
-    }
+if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
+discard;
 }
-)glsl";
+}
+)glsl", 17656};
 };
 
 } // namespace skybark::opengl
