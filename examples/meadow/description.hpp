@@ -27,6 +27,8 @@ struct weather {
     float wind = 6;            ///< m/s, the mean 10 m above the ground
     float wind_from = 250;     ///< degrees from north, clockwise
     float cloud = 0.4f;        ///< part of the sky that is covered, 0 … 0.8
+
+    [[nodiscard]] bool operator==(const weather&) const = default;
 };
 
 /// From where it is looked at.

@@ -66,6 +66,10 @@ void add_meadow_options(CLI::App& to, meadow_option_words& words) {
                   "Of a picture: when it is taken (0); of frames: how long they take (2)")
         ->type_name("S");
     to.add_option("--fps", words.fps, "Frames a second (24)")->type_name("F");
+    add_scene_options(to, words);
+}
+
+void add_scene_options(CLI::App& to, meadow_option_words& words) {
     to.add_option("--sun", words.sun,
                   "Where it stands, in degrees clockwise from north and above the horizon (235,34)")
         ->type_name("AZIMUTH,ELEVATION");
@@ -97,13 +101,31 @@ void add_meadow_options(CLI::App& to, meadow_option_words& words) {
 }
 
 result<meadow_options> check(const meadow_option_words& words, const std::string& out) {
+    auto options = check_scene(words);
+    if (!options) {
+        return options;
+    }
+    const result<void> all[] = {
+        read("--seconds", words.seconds, 0, longest, "s", options->seconds),
+        read("--fps", words.fps, fewest_frames_a_second, most_frames_a_second, "frames a second",
+             options->fps),
+    };
+    for (const result<void>& one : all) {
+        if (!one) {
+            return failure(one.error());
+        }
+    }
+    if (auto good = check_output(words, out, *options); !good) {
+        return failure(good.error());
+    }
+    return options;
+}
+
+result<meadow_options> check_scene(const meadow_option_words& words) {
     meadow_options options;
     meadow::description& what = options.what;
     meadow::weather& now = options.now;
     const result<void> all[] = {
-        read("--seconds", words.seconds, 0, longest, "s", options.seconds),
-        read("--fps", words.fps, fewest_frames_a_second, most_frames_a_second, "frames a second",
-             options.fps),
         read_sun(words.sun, 0, now.sun_azimuth, now.sun_elevation),
         read("--turbidity", words.turbidity, 1.7, 10, "", now.turbidity),
         read("--wind", words.wind, 0, 30, "m/s", now.wind),
@@ -118,7 +140,6 @@ result<meadow_options> check(const meadow_option_words& words, const std::string
         read("--supersampling", words.supersampling, 1, 8, what.supersampling),
         read("--lod", words.lod, 0.25, 64, "", options.lod),
         check_view(words, options),
-        check_output(words, out, options),
     };
     for (const result<void>& one : all) {
         if (!one) {

@@ -44,11 +44,15 @@ struct meadow_options {
     }
 };
 
+/// Those of the scene alone; or with them, when pictures of it are taken.
+void add_scene_options(CLI::App& to, meadow_option_words& words);
 void add_meadow_options(CLI::App& to, meadow_option_words& words);
 
 /// Numbers in their ranges, and nothing that contradicts something else. `out` is -o.
 /// Errors: sentences that name the option, what it is and what was expected.
 [[nodiscard]] result<meadow_options> check(const meadow_option_words& words,
                                            const std::string& out);
+/// The same, of the scene's alone.
+[[nodiscard]] result<meadow_options> check_scene(const meadow_option_words& words);
 
 } // namespace skybark::tool
