@@ -233,9 +233,22 @@ class swaying_tree {
     /// detailed_branch_mesh, are thinned out with distance.
     void look_from(const view_detail& view) { view_ = view; }
 
-    /// Makes more room for bark where the last frame had too little: true if it did.
+    /// Makes more room for bark, or for branches that are a detailed_branch_mesh, where the last
+    /// frame had too little: true if it did.
     [[nodiscard]] result<bool> update(B& device) {
-        return bark_ ? bark_->update(device, mesh_) : result<bool>(false);
+        bool grown = false;
+        if constexpr (requires { mesh_.grow(device); }) {
+            const auto more = mesh_.grow(device);
+            if (!more) {
+                return more;
+            }
+            grown = *more;
+        }
+        if (!bark_) {
+            return grown;
+        }
+        const auto more = bark_->update(device, mesh_);
+        return more ? result<bool>(grown || *more) : more;
     }
 
     /// Calls `draw(vertices, geometry)` for all of the wood: a view of surface_vertex, and which.

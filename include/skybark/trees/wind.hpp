@@ -170,6 +170,37 @@ class wind_field {
         return create(device, places, *table);
     }
 
+    /// Another table of as many waves with the same profile, from the next `record` on. Its waves
+    /// go on in the phases that they have at `time`, in seconds: where a model has another speed or
+    /// direction and all else is the same, gusts that are under way stay, and grow or turn.
+    /// Errors: bad_input where the number of waves or the profile is another, or a value out of
+    /// range.
+    [[nodiscard]] result<void> change(B& device, const gusts& table, double time) {
+        if (auto valid = tabulate(table); !valid) {
+            return failure(valid.error());
+        }
+        const mean_profile& own = profile_;
+        if (table.waves.size() != tones_.size() || table.profile.exponent != own.exponent ||
+            table.profile.reference_height != own.reference_height ||
+            table.profile.ground != own.ground) {
+            return fail(error_code::bad_input,
+                        std::string("A wind of ")
+                            .append(std::to_string(tones_.size()))
+                            .append(" waves cannot change to ")
+                            .append(std::to_string(table.waves.size()))
+                            .append(" waves, or to another profile; create a new one."));
+        }
+        const std::vector<shared::wind_waves> waves = waves_of(table);
+        kernel_.mean = glm::vec4(glm::vec3(table.mean), 0);
+        for (std::size_t i = 0; i < tones_.size(); ++i) {
+            const double frequency = table.waves[i].frequency;
+            tones_[i].phase =
+                detail::fraction(tones_[i].phase + (tones_[i].frequency - frequency) * time);
+            tones_[i].frequency = frequency;
+        }
+        return device.upload(*waves_, 0, std::as_bytes(std::span(waves)));
+    }
+
     /// Appends the air at `time`, in seconds, finite. Allocates nothing.
     void record(recorder& to, double time) {
         assert(std::isfinite(time));
@@ -197,9 +228,10 @@ class wind_field {
 
     wind_field() = default;
 
-    [[nodiscard]] result<void> send(B& device, const gusts& table) {
-        const std::size_t groups = std::max<std::size_t>(1, (table.waves.size() + 3) / 4);
-        std::vector<shared::wind_waves> waves(groups);
+    /// Four waves to a record; where there are none, one of no amplitude.
+    [[nodiscard]] static std::vector<shared::wind_waves> waves_of(const gusts& table) {
+        std::vector<shared::wind_waves> waves(
+            std::max<std::size_t>(1, (table.waves.size() + 3) / 4));
         for (std::size_t i = 0; i < table.waves.size(); ++i) {
             const wave& w = table.waves[i];
             shared::wind_waves& four = waves[i / 4];
@@ -210,15 +242,23 @@ class wind_field {
             four.ax[lane] = static_cast<float>(w.amplitude.x);
             four.ay[lane] = static_cast<float>(w.amplitude.y);
             four.az[lane] = static_cast<float>(w.amplitude.z);
+        }
+        return waves;
+    }
+
+    [[nodiscard]] result<void> send(B& device, const gusts& table) {
+        const std::vector<shared::wind_waves> waves = waves_of(table);
+        for (const wave& w : table.waves) {
             tones_.push_back({w.frequency, w.phase});
         }
-        phases_now_.assign(groups, glm::vec4(0));
-        kernel_ = {glm::vec4(glm::vec3(table.mean), 0), static_cast<std::uint32_t>(groups)};
+        phases_now_.assign(waves.size(), glm::vec4(0));
+        profile_ = table.profile;
+        kernel_ = {glm::vec4(glm::vec3(table.mean), 0), static_cast<std::uint32_t>(waves.size())};
         auto made = make_buffer<B, shared::wind_waves>(device, waves);
         if (!made) {
             return failure(made.error());
         }
-        auto room = device.create_buffer(groups * sizeof(glm::vec4));
+        auto room = device.create_buffer(waves.size() * sizeof(glm::vec4));
         if (!room) {
             return failure(room.error());
         }
@@ -228,6 +268,7 @@ class wind_field {
     }
 
     kernels::wave_wind kernel_;
+    mean_profile profile_;
     detail::wind_buffers<B> buffers_;
     std::optional<buffer> waves_; // both are there after create
     std::optional<buffer> phases_;

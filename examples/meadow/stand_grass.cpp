@@ -1,0 +1,289 @@
+// Grass and flowers: tufts and discs cut out of pictures that are drawn here, on stems that sway.
+
+#include "growth.hpp"
+
+#include <scenes/random.hpp>
+#include <skybark/shared/noise.hpp>
+#include <skybark/trees/build_skeleton.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace skybark::meadow {
+
+namespace {
+
+constexpr std::uint32_t picture_side = 128;
+constexpr std::uint32_t samples = 4; ///< a texel, in each direction
+
+/// A picture of colours (sRGB, 0 … 1) where `color_at(x, y, color)` is true, `around` elsewhere.
+template <class ColorAt>
+material drawn(glm::vec3 around, float through, ColorAt&& color_at) {
+    material made;
+    made.as = look::leaf;
+    made.width = picture_side;
+    made.height = picture_side;
+    made.through = through;
+    made.texels.reserve(std::size_t{4} * picture_side * picture_side);
+    constexpr float step = 1.0f / (picture_side * samples);
+    for (std::uint32_t row = 0; row < picture_side; ++row) {
+        for (std::uint32_t column = 0; column < picture_side; ++column) {
+            glm::vec3 sum(0);
+            int inside = 0;
+            for (std::uint32_t s = 0; s < samples * samples; ++s) {
+                const float x = (static_cast<float>(column * samples + s % samples) + 0.5f) * step;
+                const float y = (static_cast<float>(row * samples + s / samples) + 0.5f) * step;
+                glm::vec3 color;
+                if (color_at(x, y, color)) {
+                    sum += color;
+                    ++inside;
+                }
+            }
+            const glm::vec3 color = inside == 0 ? around : sum / static_cast<float>(inside);
+            for (int c = 0; c < 3; ++c) {
+                made.texels.push_back(
+                    static_cast<std::uint8_t>(std::clamp(color[c], 0.0f, 1.0f) * 255 + 0.5f));
+            }
+            made.texels.push_back(
+                static_cast<std::uint8_t>(inside * 255 / static_cast<int>(samples * samples)));
+        }
+    }
+    return made;
+}
+
+/// A blade in a picture: it starts at x `foot` on the lower edge, bends towards `tip`, and is
+/// `width` wide at the foot.
+struct stroke {
+    float foot;
+    glm::vec2 tip;
+    float width;
+    float shade;
+    bool flowering; ///< a stalk with a spike of seeds
+};
+
+/// A tuft of blades that fits a leaf's octagon.
+material tuft_picture(std::uint32_t seed) {
+    scenes::random_numbers random(seed);
+    std::vector<stroke> strokes;
+    for (int i = 0; i < 15; ++i) {
+        stroke s;
+        s.flowering = i >= 12;
+        s.foot = random.between(0.40f, 0.60f);
+        const float top = s.flowering ? random.between(0.88f, 0.97f) : random.between(0.45f, 0.9f);
+        const float room = top > 0.854f ? 0.354f * (1 - top) / 0.146f : 0.37f;
+        s.tip = {0.5f + random.between(-room, room), top};
+        s.width = s.flowering ? 0.012f : random.between(0.030f, 0.045f);
+        s.shade = random.between(0.82f, 1.12f);
+        strokes.push_back(s);
+    }
+    const glm::vec3 green(0.37f, 0.45f, 0.19f);
+    return drawn(green, 0.75f, [&](float x, float y, glm::vec3& color) {
+        bool hit = false;
+        for (const stroke& s : strokes) { // the last is in front
+            const float t = y / s.tip.y;
+            if (t > 1) {
+                continue;
+            }
+            const float middle = s.foot + (s.tip.x - s.foot) * t * t;
+            float half = s.width * std::sqrt(1 - t) * 0.5f;
+            const bool spike = s.flowering && t > 0.78f;
+            if (spike) {
+                half = 0.017f * std::sin(std::numbers::pi_v<float> * (t - 0.78f) / 0.22f) + 0.004f;
+            }
+            if (std::abs(x - middle) > half) {
+                continue;
+            }
+            hit = true;
+            const glm::vec3 tip(0.49f, 0.53f, 0.25f);
+            const glm::vec3 straw(0.58f, 0.52f, 0.34f);
+            color = spike ? straw * s.shade
+                          : glm::mix(green * 0.78f, tip, t) * s.shade * (x > middle ? 1.0f : 0.93f);
+        }
+        return hit;
+    });
+}
+
+/// A disc of petals around a middle.
+material flower_picture(int petals, float slender, glm::vec3 petal, glm::vec3 middle, float eye) {
+    return drawn(petal, 0.6f, [=](float x, float y, glm::vec3& color) {
+        const float dx = x - 0.5f;
+        const float dy = y - 0.5f;
+        const float r = std::sqrt(dx * dx + dy * dy);
+        const float around = std::atan2(dy, dx) * static_cast<float>(petals) * 0.5f;
+        const float outline =
+            0.45f * (1 - slender + slender * std::sqrt(std::abs(std::cos(around))));
+        if (r < eye) {
+            color = middle * (0.8f + 0.2f * (1 - r / eye));
+            return true;
+        }
+        color = petal * (0.86f + 0.14f * r / 0.45f);
+        return r < outline;
+    });
+}
+
+/// How many tufts grow on a square metre so far from the usual camera, ahead of it or elsewhere.
+float density(glm::vec2 place) {
+    const camera usual;
+    const glm::vec2 eye(usual.eye.x, usual.eye.z);
+    const glm::vec2 ahead = glm::normalize(glm::vec2(usual.target.x, usual.target.z) - eye);
+    const glm::vec2 from = place - eye;
+    const float far = std::max(glm::length(from), 1.0f);
+    const float most = 30;
+    const float thinned = most * std::pow(std::min(1.0f, 11 / far), 1.2f);
+    const bool seen = glm::dot(from, ahead) > 0.72f * far || far < 8;
+    return seen ? thinned : 0.35f * thinned;
+}
+
+/// Patches of a size in m where something grows more or less well, 0 … 1.
+float patch(glm::vec2 place, float size, float layer) {
+    return shared::value_noise(place.x / size + 512, place.y / size + 512, layer, 65536);
+}
+
+class sower {
+  public:
+    sower(const land& ground, float amount, std::uint64_t seed)
+        : ground_(ground), amount_(amount), random_(static_cast<std::uint32_t>(seed * 104729 + 3)) {
+    }
+
+    void sow() {
+        constexpr int half = static_cast<int>(land::side) / 2;
+        for (int z = -half; z < half; ++z) {
+            for (int x = -half; x < half; ++x) {
+                sow_square({static_cast<float>(x), static_cast<float>(z)});
+            }
+        }
+    }
+
+    std::vector<trees::segment> stems;
+    std::vector<float> area;
+    std::array<std::vector<leaf>, 3> blades; ///< tufts, and two kinds of flowers
+
+  private:
+    static constexpr float stem_length = 0.3f;
+
+    [[nodiscard]] glm::vec2 within(glm::vec2 corner) {
+        return corner + glm::vec2(random_.between(0, 1), random_.between(0, 1));
+    }
+    /// So many on the whole: the fraction by chance.
+    [[nodiscard]] int number(float expected) {
+        return static_cast<int>(expected + random_.between(0, 1));
+    }
+
+    /// Four tufts share a stem; flowers have their own.
+    void sow_square(glm::vec2 corner) {
+        const float here = density(corner + 0.5f) * amount_;
+        int tufts = number(here * (0.7f + 0.6f * patch(corner, 7, 11)));
+        while (tufts > 0) {
+            const glm::vec2 middle = within(corner);
+            const std::uint32_t stem = add_stem(middle, stem_length, 0.0015f, 0.04f);
+            for (int i = 0; i < 4 && tufts > 0; ++i, --tufts) {
+                const glm::vec2 aside(random_.between(-0.3f, 0.3f), random_.between(-0.3f, 0.3f));
+                add_tuft(middle + aside, stem);
+            }
+        }
+        const float daisies = patch(corner, 9, 21) * patch(corner, 26, 22);
+        const float buttercups = patch(corner, 7, 31) * patch(corner, 31, 32);
+        add_flowers(corner, here, daisies, 1);
+        add_flowers(corner, here, buttercups, 2);
+    }
+
+    void add_flowers(glm::vec2 corner, float here, float share, std::size_t kind) {
+        const float part = std::max(0.0f, share - 0.22f);
+        for (int n = number(0.9f * here * part); n > 0; --n) {
+            const glm::vec2 place = within(corner);
+            const float tall = random_.between(0.34f, 0.52f);
+            add_flower(place, add_stem(place, tall, 0.001f, 0.008f), tall, kind);
+        }
+    }
+
+    std::uint32_t add_stem(glm::vec2 place, float tall, float radius, float shown) {
+        trees::segment s;
+        s.base = ground_.on(place.x, place.y);
+        s.tip = s.base + glm::vec3(0, tall, 0);
+        s.base_radius = radius;
+        s.radius = radius;
+        stems.push_back(s);
+        area.push_back(shown);
+        return static_cast<std::uint32_t>(stems.size() - 1);
+    }
+
+    /// A leaf that points along `y`, its upper face as near to `z` as that lets it.
+    [[nodiscard]] leaf placed(glm::vec3 at, glm::vec3 y, glm::vec3 z, float width, float length) {
+        const glm::vec3 up = glm::normalize(y);
+        const glm::vec3 across = glm::normalize(glm::cross(up, z));
+        const glm::quat turn =
+            glm::normalize(glm::quat_cast(glm::mat3(across, up, glm::cross(across, up))));
+        leaf made;
+        made.position = at;
+        made.orientation = {turn.x, turn.y, turn.z, turn.w};
+        made.width = width;
+        made.length = length;
+        made.seed = random_.bits();
+        return made;
+    }
+
+    [[nodiscard]] glm::vec3 level() {
+        const float a = random_.between(0, 2 * std::numbers::pi_v<float>);
+        return {std::cos(a), 0, std::sin(a)};
+    }
+
+    void add_tuft(glm::vec2 place, std::uint32_t stem) {
+        const camera usual;
+        const float far = glm::distance(place, glm::vec2(usual.eye.x, usual.eye.z));
+        const float lush = 0.65f + 0.7f * patch(place, 5, 1) * (0.5f + patch(place, 19, 2));
+        const float length = 0.36f * lush * random_.between(0.75f, 1.2f);
+        const float width = (0.34f + std::min(0.5f, 0.006f * far)) * random_.between(0.8f, 1.2f);
+        const glm::vec3 lean = 0.35f * random_.in_ball();
+        leaf made = placed(ground_.on(place.x, place.y) - glm::vec3(0, 0.02f, 0),
+                           ground_.normal(place.x, place.y) + glm::vec3(lean.x, 0, lean.z), level(),
+                           width, length);
+        made.fold = random_.between(0.3f, 0.7f);
+        made.carrier = stem;
+        blades[0].push_back(made);
+    }
+
+    void add_flower(glm::vec2 place, std::uint32_t stem, float tall, std::size_t kind) {
+        const float size = (kind == 1 ? 0.062f : 0.045f) * random_.between(0.8f, 1.2f);
+        const glm::vec3 up = glm::normalize(glm::vec3(0, 1, 0) + 0.5f * random_.in_ball());
+        const glm::vec3 y = glm::normalize(glm::cross(up, level()));
+        const glm::vec3 middle = ground_.on(place.x, place.y) + glm::vec3(0, tall, 0);
+        leaf made = placed(middle - y * (size / 2), y, up, size, size);
+        made.fold = 0.2f;
+        made.carrier = stem;
+        blades[kind].push_back(made);
+    }
+
+    const land& ground_;
+    float amount_;
+    scenes::random_numbers random_;
+};
+
+} // namespace
+
+result<grown_grass> grow_grass(float amount, const land& ground, std::uint64_t seed) {
+    grown_grass made;
+    if (!(amount > 0)) {
+        return made;
+    }
+    sower all(ground, amount, seed);
+    all.sow();
+    if (all.stems.empty()) {
+        return made;
+    }
+    auto stems = trees::build_skeleton(all.stems); // roots alone: their order stays
+    if (!stems) {
+        return failure(stems.error());
+    }
+    made.stems = std::move(*stems);
+    made.area = std::move(all.area);
+    made.kinds.push_back(
+        {std::move(all.blades[0]), tuft_picture(static_cast<std::uint32_t>(seed + 5))});
+    made.kinds.push_back({std::move(all.blades[1]), flower_picture(13, 0.55f, {0.93f, 0.93f, 0.90f},
+                                                                   {0.86f, 0.68f, 0.16f}, 0.13f)});
+    made.kinds.push_back({std::move(all.blades[2]), flower_picture(5, 0.35f, {0.93f, 0.80f, 0.14f},
+                                                                   {0.80f, 0.66f, 0.12f}, 0.10f)});
+    return made;
+}
+
+} // namespace skybark::meadow
