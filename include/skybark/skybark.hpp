@@ -20,6 +20,7 @@
 #include <skybark/gather/directions.hpp>
 #include <skybark/gather/final_gather.hpp>
 #include <skybark/gather/gathered_state.hpp>
+#include <skybark/gather/irradiance_volume.hpp>
 #include <skybark/gather/lightmap.hpp>
 #include <skybark/gather/scene.hpp>
 #include <skybark/trees/bark_mesh.hpp>

@@ -1,7 +1,7 @@
 // Device side of skybark::kernels::light_at_points.
 #define KERNEL_VOLUMES 2
 #include "../shared/records.glsl"
-#define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation; float diffuse;
+#define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation; float diffuse; uint stride;
 #include "../skeletons/parameters.glsl"
 #include "../shared/light_at_points.glsl"
 layout(std430, binding = 0) readonly buffer places_buffer { vec4 places[]; };
@@ -36,7 +36,7 @@ float value_at(int n, vec3 cells, vec3 ends) {
 }
 
 void kernel_map(uint i) {
-    vec3 cells = cells_of(grid, places[i].xyz);
+    vec3 cells = cells_of(grid, places[i * stride].xyz);
     vec3 size = vec3(size_of(0));
     float attenuation = value_at(0, cells, size);
     float light = octaves_light(attenuation, octaves, octave_weight, octave_attenuation);

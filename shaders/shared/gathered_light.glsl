@@ -37,6 +37,18 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
     return vec4(mean, x, y, z);
 }
 
+// From such a sum to the coefficients c_m = ∫ L Y_m of the real spherical harmonics Y_0 = 0.282095,
+// and 0.488603 times y, z and x, in that order, where each direction stands for the solid angle
+// `each`.
+vec4 harmonics_of(vec4 moments, float each)
+{
+    precise float mean = each * (0.282094792f * moments.x);
+    precise float y = each * (0.488602512f * moments.z);
+    precise float z = each * (0.488602512f * moments.w);
+    precise float x = each * (0.488602512f * moments.y);
+    return vec4(mean, y, z, x);
+}
+
 // Radiance that leaves a diffuse surface: what it emits, and parts of what arrives on both sides.
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {

@@ -3,6 +3,7 @@
 #include <skybark/kernels/directional_light.hpp>
 #include <skybark/kernels/gather_light.hpp>
 #include <skybark/kernels/gather_sun.hpp>
+#include <skybark/kernels/gathered_harmonics.hpp>
 #include <skybark/kernels/gathered_irradiance.hpp>
 #include <skybark/kernels/patch_samples.hpp>
 #include <skybark/kernels/surface_light.hpp>
@@ -122,7 +123,7 @@ TEST(directional_light, adds_moments_as_well) {
 }
 
 TEST(gather_sun, lights_what_faces_it_and_sees_it) {
-    const kernels::gather_sun sun{vec4(0, 0.6f, 0.8f, 0), vec4(10, 20, 30, 0)};
+    const kernels::gather_sun sun{vec4(0, 0.6f, 0.8f, 0), vec4(10, 20, 30, 0), 0};
     const std::array<gather_sample, 5> samples{
         looking(vec3(0, 0, 1)), looking(vec3(0, 0, -1)), looking(vec3(0, 0, 1)),
         looking(vec3(0, not_a_number, 1)), looking(vec3(0, 0, 1), vec3(not_a_number))};
@@ -131,11 +132,46 @@ TEST(gather_sun, lights_what_faces_it_and_sees_it) {
     std::array<vec4, 5> direct{};
     direct[0] = vec4(1, 1, 1, 0);
     for (std::uint32_t i = 0; i < 5; ++i) {
-        sun.map(i, samples, hits, direct, direct);
+        sun.map(i, samples, hits, direct, direct, direct);
     }
     EXPECT_EQ(direct[0], vec4(1, 1, 1, 0) + vec4(10, 20, 30, 0) * 0.8f);
     for (std::size_t i = 1; i < 5; ++i) {
         EXPECT_EQ(direct[i], vec4(0)) << i;
+    }
+}
+
+TEST(gather_sun, adds_the_part_that_arrives) {
+    const kernels::gather_sun sun{vec4(0, 0.6f, 0.8f, 0), vec4(10, 20, 30, 0), 1};
+    const std::array<gather_sample, 3> samples{looking(vec3(0, 0, 1)), looking(vec3(0, 0, 1)),
+                                               looking(vec3(0, 0, -1))};
+    const std::array<gather_hit, 3> hits{};
+    const std::array<vec4, 3> arriving{vec4(9, 0.25f, 9, 9), vec4(9, 0, 9, 9), vec4(9, 1, 9, 9)};
+    std::array<vec4, 3> direct{};
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        sun.map(i, samples, hits, arriving, direct, direct);
+    }
+    EXPECT_EQ(direct[0], vec4(10, 20, 30, 0) * 0.2f);
+    EXPECT_EQ(direct[1], vec4(0));
+    EXPECT_EQ(direct[2], vec4(0));
+}
+
+/// Y_0 = 1/2 √(1/π) and √(3/4π) times y, z, x, in double precision; three colours of two samples.
+TEST(gathered_harmonics, are_the_moments_by_the_solid_angle) {
+    std::vector<vec4> moments;
+    for (int i = 0; i < 6; ++i) {
+        const auto at = static_cast<float>(i);
+        moments.emplace_back(1 + at, 2 - at, 0.5f * at, -at);
+    }
+    std::vector<vec4> found(6);
+    for (std::uint32_t i = 0; i < 2; ++i) {
+        kernels::gathered_harmonics{0.25f}.map(i, moments, found);
+    }
+    const double y0 = std::sqrt(1 / (4 * pi));
+    const double y1 = std::sqrt(3 / (4 * pi));
+    for (std::size_t i = 0; i < 6; ++i) {
+        const glm::dvec4 m(moments[i]);
+        const glm::dvec4 expected = 0.25 * glm::dvec4(y0 * m.x, y1 * m.z, y1 * m.w, y1 * m.y);
+        EXPECT_LT(length(glm::dvec4(found[i]) - expected), 1e-6 * length(expected)) << i;
     }
 }
 

@@ -32,6 +32,7 @@
 #include <skybark/opengl/programs/directional_light.hpp>
 #include <skybark/opengl/programs/gather_light.hpp>
 #include <skybark/opengl/programs/gather_sun.hpp>
+#include <skybark/opengl/programs/gathered_harmonics.hpp>
 #include <skybark/opengl/programs/gathered_irradiance.hpp>
 #include <skybark/opengl/programs/grid_impulse.hpp>
 #include <skybark/opengl/programs/grid_wind.hpp>
@@ -39,6 +40,7 @@
 #include <skybark/opengl/programs/harris_read.hpp>
 #include <skybark/opengl/programs/harris_splat.hpp>
 #include <skybark/opengl/programs/hermite_branch.hpp>
+#include <skybark/opengl/programs/irradiance_voxels.hpp>
 #include <skybark/opengl/programs/layer_hits.hpp>
 #include <skybark/opengl/programs/leaf_blade.hpp>
 #include <skybark/opengl/programs/light_at_points.hpp>
@@ -67,6 +69,7 @@
 #include <skybark/opengl/programs/probe_volume.hpp>
 #include <skybark/opengl/programs/probe_volume_draw.hpp>
 #include <skybark/opengl/programs/probe_voxels.hpp>
+#include <skybark/opengl/programs/puff_light.hpp>
 #include <skybark/opengl/programs/ring_indices.hpp>
 #include <skybark/opengl/programs/scatter_average.hpp>
 #include <skybark/opengl/programs/scatter_coarsen.hpp>

@@ -29,6 +29,7 @@
 #include <skybark/vulkan/programs/directional_light.hpp>
 #include <skybark/vulkan/programs/gather_light.hpp>
 #include <skybark/vulkan/programs/gather_sun.hpp>
+#include <skybark/vulkan/programs/gathered_harmonics.hpp>
 #include <skybark/vulkan/programs/gathered_irradiance.hpp>
 #include <skybark/vulkan/programs/grid_impulse.hpp>
 #include <skybark/vulkan/programs/grid_wind.hpp>
@@ -36,6 +37,7 @@
 #include <skybark/vulkan/programs/harris_read.hpp>
 #include <skybark/vulkan/programs/harris_splat.hpp>
 #include <skybark/vulkan/programs/hermite_branch.hpp>
+#include <skybark/vulkan/programs/irradiance_voxels.hpp>
 #include <skybark/vulkan/programs/layer_hits.hpp>
 #include <skybark/vulkan/programs/leaf_blade.hpp>
 #include <skybark/vulkan/programs/light_at_points.hpp>
@@ -64,6 +66,7 @@
 #include <skybark/vulkan/programs/probe_volume.hpp>
 #include <skybark/vulkan/programs/probe_volume_draw.hpp>
 #include <skybark/vulkan/programs/probe_voxels.hpp>
+#include <skybark/vulkan/programs/puff_light.hpp>
 #include <skybark/vulkan/programs/ring_indices.hpp>
 #include <skybark/vulkan/programs/scatter_average.hpp>
 #include <skybark/vulkan/programs/scatter_coarsen.hpp>

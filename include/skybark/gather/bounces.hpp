@@ -56,9 +56,10 @@ class bounced_light {
     }
 
     /// A distant source, such as the sun: `irradiance` across its beam, W/m². From the next bounce
-    /// on, with all those that were named before.
-    void light_from(glm::vec3 towards, glm::vec3 irradiance) {
-        sources_.emplace_back(towards, irradiance);
+    /// on, with all those that were named before. `arriving` may hold, in the y of a vec4 a patch,
+    /// the part of the beam that gets to the scene, as in final_gather::record_light_from.
+    void light_from(glm::vec3 towards, glm::vec3 irradiance, const buffer_view<B>& arriving = {}) {
+        sources_.push_back({towards, irradiance, arriving});
     }
     void forget_sources() { sources_.clear(); }
 
@@ -88,11 +89,12 @@ class bounced_light {
 
     /// Back to what the materials emit, and to no bounce.
     [[nodiscard]] result<void> restart() {
+        return run(*device_, [&](auto& recorder) { record_restart(recorder); });
+    }
+    void record_restart(typename B::recorder& recorder) {
         bounces_ = 0;
-        return run(*device_, [&](auto& recorder) {
-            gather_.record_restart(recorder, options_.gather.seed);
-            record_radiance(recorder);
-        });
+        gather_.record_restart(recorder, options_.gather.seed);
+        record_radiance(recorder);
     }
 
     /// The first pass is the caller's: the radiance that leaves each patch, W/(m² sr), a vec4 each,
@@ -131,6 +133,12 @@ class bounced_light {
     [[nodiscard]] const bounce_options& options() const noexcept { return options_; }
 
   private:
+    struct source {
+        glm::vec3 towards;
+        glm::vec3 irradiance;
+        buffer_view<B> arriving;
+    };
+
     bounced_light(B& device, const gather_scene<B>& scene, const bounce_options& options,
                   final_gather<B>&& gather, typename B::buffer&& irradiance)
         : device_(&device), scene_(&scene), options_(options), gather_(std::move(gather)),
@@ -138,8 +146,8 @@ class bounced_light {
 
     void record_first(typename B::recorder& recorder) {
         gather_.record_restart(recorder, options_.gather.seed + bounces_);
-        for (const auto& [towards, irradiance] : sources_) {
-            gather_.record_light_from(recorder, towards, irradiance);
+        for (const source& from : sources_) {
+            gather_.record_light_from(recorder, from.towards, from.irradiance, from.arriving);
         }
     }
     void record_last(typename B::recorder& recorder) {
@@ -156,7 +164,7 @@ class bounced_light {
     bounce_options options_;
     final_gather<B> gather_;
     typename B::buffer irradiance_;
-    std::vector<std::pair<glm::vec3, glm::vec3>> sources_; ///< towards, irradiance
+    std::vector<source> sources_;
     std::uint32_t bounces_ = 0;
 };
 

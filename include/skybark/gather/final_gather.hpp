@@ -34,7 +34,9 @@
 #include <skybark/kernels/directional_light.hpp>
 #include <skybark/kernels/gather_light.hpp>
 #include <skybark/kernels/gather_sun.hpp>
+#include <skybark/kernels/gathered_harmonics.hpp>
 #include <skybark/kernels/gathered_irradiance.hpp>
+#include <skybark/shared/irradiance_grid.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -80,14 +82,11 @@ struct directional_irradiance {
     glm::vec4 green{0};
     glm::vec4 blue{0};
 
-    /// Of a surface with this unit normal (Ramamoorthi and Hanrahan 2001, "An Efficient
-    /// Representation for Irradiance Environment Maps": π Y_0 c_0 + 2π/3 Σ Y_m c_m).
+    /// Of a surface with this unit normal: π Y_0 c_0 + 2π/3 Σ Y_m c_m.
     [[nodiscard]] glm::vec3 irradiance(glm::vec3 normal) const {
-        const auto of = [&](const glm::vec4& c) {
-            return 0.886227f * c.x +
-                   1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x);
-        };
-        return {of(red), of(green), of(blue)};
+        return {shared::irradiance_of_color(red, normal),
+                shared::irradiance_of_color(green, normal),
+                shared::irradiance_of_color(blue, normal)};
     }
 };
 static_assert(sizeof(directional_irradiance) == 48);
@@ -100,10 +99,10 @@ struct gather_progress {
 };
 
 template <class B>
-concept gathers =
-    resolves_composed<B> && maps<B, kernels::patch_samples> && maps<B, kernels::surface_light> &&
-    maps<B, kernels::gather_light> && maps<B, kernels::directional_light> &&
-    maps<B, kernels::gather_sun> && maps<B, kernels::gathered_irradiance>;
+concept gathers = resolves_composed<B> && maps<B, kernels::patch_samples> &&
+    maps<B, kernels::surface_light> && maps<B, kernels::gather_light> &&
+    maps<B, kernels::directional_light> && maps<B, kernels::gather_sun> &&
+    maps<B, kernels::gathered_harmonics> && maps<B, kernels::gathered_irradiance>;
 
 namespace detail {
 
@@ -213,18 +212,22 @@ class final_gather {
         return run(*device_,
                    [&](auto& recorder) { record_light_from(recorder, towards, irradiance); });
     }
-    void record_light_from(typename B::recorder& recorder, glm::vec3 towards,
-                           glm::vec3 irradiance) {
+    /// `arriving` may hold, in the y of a vec4 a sample, the part of the beam that gets to the
+    /// scene at all, as kernels::light_at_points finds it under clouds. Absent: all of it.
+    void record_light_from(typename B::recorder& recorder, glm::vec3 towards, glm::vec3 irradiance,
+                           const buffer_view<B>& arriving = {}) {
         const ray_bundle bundle = resolver_.bundle(scene_->box(), towards, scene_->lift());
         resolver_.record_triangles(recorder, bundle, scene_->triangles());
         kernels::gather_sun sun;
         sun.direction = bundle.direction;
         sun.irradiance = glm::vec4(irradiance, 0);
+        sun.dimmed = arriving ? 1 : 0;
         for (const part& p : parts_) {
             const bundle_work<B> work = work_of(p);
             resolver_.record_samples(recorder, bundle, work);
             const auto direct = view<B>(*p.direct);
-            recorder.map(sun, {work.samples, work.hits, direct, direct}, range{0, p.count});
+            const auto here = arriving ? part_of(arriving, p, light_bytes) : direct;
+            recorder.map(sun, {work.samples, work.hits, here, direct, direct}, range{0, p.count});
         }
     }
 
@@ -249,9 +252,7 @@ class final_gather {
     /// buffer of the caller's. Where nothing has been gathered the error is 1e30.
     void record_irradiance(typename B::recorder& recorder, const buffer_view<B>& into) const {
         for (const part& p : parts_) {
-            record_found(recorder, p,
-                         {into.buffer, into.offset + p.first * sizeof(glm::vec4),
-                          p.count * sizeof(glm::vec4)});
+            record_found(recorder, p, part_of(into, p, light_bytes));
         }
     }
 
@@ -272,7 +273,17 @@ class final_gather {
         return {};
     }
 
-    /// What arrives by direction. Only with options().directional; `found` has one a sample.
+    /// What arrives by direction, a directional_irradiance a sample, into a buffer of the caller's.
+    /// Only with options().directional.
+    void record_directional(typename B::recorder& recorder, const buffer_view<B>& into) const {
+        assert(options_.directional && "final_gather_options::directional");
+        const kernels::gathered_harmonics harmonics{solid_angle()};
+        for (const part& p : parts_) {
+            recorder.map(harmonics, {view<B>(*p.moments), part_of(into, p, moment_bytes)},
+                         range{0, p.count});
+        }
+    }
+    /// The same for the host: `found` has one a sample.
     [[nodiscard]] result<void> read_directional(std::span<directional_irradiance> found) {
         assert(options_.directional && "final_gather_options::directional");
         assert(found.size() == samples() && "one a sample");
@@ -283,9 +294,9 @@ class final_gather {
                 return done;
             }
             for (directional_irradiance& f : some) {
-                f.red = harmonics(f.red);
-                f.green = harmonics(f.green);
-                f.blue = harmonics(f.blue);
+                f.red = shared::harmonics_of(f.red, solid_angle());
+                f.green = shared::harmonics_of(f.green, solid_angle());
+                f.blue = shared::harmonics_of(f.blue, solid_angle());
             }
         }
         return {};
@@ -495,11 +506,7 @@ class final_gather {
     }
 
     [[nodiscard]] bundle_work<B> work_of(const part& p) const {
-        const auto samples =
-            p.own
-                ? view<B>(*p.own)
-                : buffer_view<B>{samples_.buffer, samples_.offset + p.first * sizeof(gather_sample),
-                                 p.count * sizeof(gather_sample)};
+        const auto samples = p.own ? view<B>(*p.own) : part_of(samples_, p, sizeof(gather_sample));
         return {scene_->triangles(), scene_->alpha(), samples,
                 view<B, gather_hit>(*hits_, 0, p.count)};
     }
@@ -582,12 +589,16 @@ class final_gather {
         }
     }
 
-    /// From ΣL and ΣL d to the coefficients: a direction stands for 2π / D of the half sphere.
-    [[nodiscard]] glm::vec4 harmonics(const glm::vec4& moments) const {
-        const float each =
-            axes_ == 0 ? 0.0f : static_cast<float>(6.283185307179586 / static_cast<double>(axes_));
-        return each * glm::vec4(0.282094792f * moments.x, 0.488602512f * moments.z,
-                                0.488602512f * moments.w, 0.488602512f * moments.y);
+    /// That a direction stands for: of D axes, 2π / D of the half sphere.
+    [[nodiscard]] float solid_angle() const {
+        return axes_ == 0 ? 0.0f
+                          : static_cast<float>(6.283185307179586 / static_cast<double>(axes_));
+    }
+
+    /// Of a view with so many bytes a sample, those of part p.
+    [[nodiscard]] static buffer_view<B> part_of(const buffer_view<B>& all, const part& p,
+                                                std::uint64_t bytes) {
+        return {all.buffer, all.offset + p.first * bytes, p.count * bytes};
     }
 
     /// Calls `transfer(buffer, offset in it, run of bytes)` for the sums, replicate after

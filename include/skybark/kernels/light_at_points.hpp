@@ -9,9 +9,9 @@
 
 namespace skybark::kernels {
 
-/// Buffers: places (xyz, m); found: x: attenuation, y: light over that of the sun, z: the part of
-/// it that was scattered more than once, w: 0. Maps over places. Volumes: attenuation; diffuse
-/// fluence over the sun's irradiance, or any where `diffuse` is 0.
+/// Buffers: places (xyz of every `stride`-th vec4, m); found: x: attenuation, y: light over that of
+/// the sun, z: the part of it that was scattered more than once, w: 0. Maps over places. Volumes:
+/// attenuation; diffuse fluence over the sun's irradiance, or any where `diffuse` is 0.
 ///
 /// Between the middles of eight voxels it is linear along each axis, by whole floats: what filters
 /// of textures do has fewer digits on some devices. Above the box and beside it nothing is taken
@@ -27,12 +27,13 @@ struct light_at_points {
     std::uint32_t octaves = 1;
     float octave_weight = 0.5f;      ///< w
     float octave_attenuation = 0.5f; ///< b
-    float diffuse = 0; ///< cells of the fluence in a voxel of the attenuation; 0: no fluence
+    float diffuse = 0;        ///< cells of the fluence in a voxel of the attenuation; 0: no fluence
+    std::uint32_t stride = 1; ///< vec4s from a place to the next; of gather_samples 2
 
     template <class Grids>
     void map(std::uint32_t i, const Grids& grids, std::span<const glm::vec4> places,
              std::span<glm::vec4> found) const {
-        const glm::vec3 cells = shared::cells_of(grid, glm::vec3(places[i]));
+        const glm::vec3 cells = shared::cells_of(grid, glm::vec3(places[std::size_t{i} * stride]));
         const float attenuation = value_at(grids, 0, cells, grids.size(0));
         const float light =
             shared::octaves_light(attenuation, octaves, octave_weight, octave_attenuation);
@@ -66,6 +67,6 @@ struct light_at_points {
         return low + (high - low) * part.y;
     }
 };
-static_assert(sizeof(light_at_points) == 96);
+static_assert(sizeof(light_at_points) == 100);
 
 } // namespace skybark::kernels

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 83d6e160fc24609a2b0b5918642edd17d92f1cba71a4afc9319d50612b7a595f
+// sha256 d2b419314b6acbdec81961b1eeb91b509bc80d8c7dc7bf012b8447b23410ac63
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -43,6 +43,18 @@ inline vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
     float y = sum.z + radiance * (side * direction.y);
     float z = sum.w + radiance * (side * direction.z);
     return vec4(mean, x, y, z);
+}
+
+// From such a sum to the coefficients c_m = ∫ L Y_m of the real spherical harmonics Y_0 = 0.282095,
+// and 0.488603 times y, z and x, in that order, where each direction stands for the solid angle
+// `each`.
+inline vec4 harmonics_of(vec4 moments, float each)
+{
+    float mean = each * (0.282094792f * moments.x);
+    float y = each * (0.488602512f * moments.z);
+    float z = each * (0.488602512f * moments.w);
+    float x = each * (0.488602512f * moments.y);
+    return vec4(mean, y, z, x);
 }
 
 // Radiance that leaves a diffuse surface: what it emits, and parts of what arrives on both sides.

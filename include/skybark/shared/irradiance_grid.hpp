@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 440857120f9f2610ff99c1f3470cb0b492b0e3d4063355799329994f8b4ab584
+// sha256 33390aed2d56d3f7051aaaada41b54b83019f3b93a2eda10de7e5029617d51fc
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -36,16 +36,15 @@ inline vec3 irradiance_texel(irradiance_grid grid, vec3 place, float coefficient
 // 2 pi / 3 Y_m c_m).
 inline float irradiance_of_color(vec4 c, vec3 normal)
 {
-    return max(0.886227f * c.x +
-                   1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x),
-               0.0f);
+    return 0.886227f * c.x + 1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x);
 }
 
 // Irradiance of a surface with this unit normal. Not below 0, as the truncated series may be.
 inline vec3 irradiance_of(vec4 red, vec4 green, vec4 blue, vec3 normal)
 {
-    return vec3(irradiance_of_color(red, normal), irradiance_of_color(green, normal),
-                irradiance_of_color(blue, normal));
+    return vec3(max(irradiance_of_color(red, normal), 0.0f),
+                max(irradiance_of_color(green, normal), 0.0f),
+                max(irradiance_of_color(blue, normal), 0.0f));
 }
 
 } // namespace skybark::shared

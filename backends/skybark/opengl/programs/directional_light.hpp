@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5d151ace368fef56b036d86ba65afb16068f5fdbe50ce582a843a998684e0062
+// sha256 090e5ad94d7a45a58d34cde6dd84c68960a5f60128a5778de98caea42ad37387
 #pragma once
 
 #include <skybark/kernels/directional_light.hpp>
@@ -375,6 +375,14 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
     precise float y = sum.z + radiance * (side * direction.y);
     precise float z = sum.w + radiance * (side * direction.z);
     return vec4(mean, x, y, z);
+}
+vec4 harmonics_of(vec4 moments, float each)
+{
+    precise float mean = each * (0.282094792f * moments.x);
+    precise float y = each * (0.488602512f * moments.z);
+    precise float z = each * (0.488602512f * moments.w);
+    precise float x = each * (0.488602512f * moments.y);
+    return vec4(mean, y, z, x);
 }
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
@@ -801,6 +809,14 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
     precise float y = sum.z + radiance * (side * direction.y);
     precise float z = sum.w + radiance * (side * direction.z);
     return vec4(mean, x, y, z);
+}
+vec4 harmonics_of(vec4 moments, float each)
+{
+    precise float mean = each * (0.282094792f * moments.x);
+    precise float y = each * (0.488602512f * moments.z);
+    precise float z = each * (0.488602512f * moments.w);
+    precise float x = each * (0.488602512f * moments.y);
+    return vec4(mean, y, z, x);
 }
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 bb1a116687f7e46b6f7d4c24e294d9829587fe8a96066bd443055b931d1e6e3a
+// sha256 10448ceaea1afad24aa6e6de8ded550f9e9f1d25f1f2dcadddd8da121f928d9a
 #pragma once
 
 #include <skybark/kernels/gather_light.hpp>
@@ -375,6 +375,14 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
     precise float y = sum.z + radiance * (side * direction.y);
     precise float z = sum.w + radiance * (side * direction.z);
     return vec4(mean, x, y, z);
+}
+vec4 harmonics_of(vec4 moments, float each)
+{
+    precise float mean = each * (0.282094792f * moments.x);
+    precise float y = each * (0.488602512f * moments.z);
+    precise float z = each * (0.488602512f * moments.w);
+    precise float x = each * (0.488602512f * moments.y);
+    return vec4(mean, y, z, x);
 }
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
@@ -794,6 +802,14 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
     precise float y = sum.z + radiance * (side * direction.y);
     precise float z = sum.w + radiance * (side * direction.z);
     return vec4(mean, x, y, z);
+}
+vec4 harmonics_of(vec4 moments, float each)
+{
+    precise float mean = each * (0.282094792f * moments.x);
+    precise float y = each * (0.488602512f * moments.z);
+    precise float z = each * (0.488602512f * moments.w);
+    precise float x = each * (0.488602512f * moments.y);
+    return vec4(mean, y, z, x);
 }
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {

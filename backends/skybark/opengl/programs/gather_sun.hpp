@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 447a194c8f4c6dc3519ffb8eaa5ce19dbd8cc91d60105dee9b713865e2bb62dd
+// sha256 9276aa0c0033983c269750a97262310d700e9674471d0b63f41633f7d21a06a4
 #pragma once
 
 #include <skybark/kernels/gather_sun.hpp>
@@ -14,7 +14,7 @@ struct program<kernels::gather_sun> {
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 64) in;
-#define KERNEL_PARAMETERS vec4 direction; vec4 irradiance;
+#define KERNEL_PARAMETERS vec4 direction; vec4 irradiance; uint dimmed;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -192,6 +192,14 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
     precise float z = sum.w + radiance * (side * direction.z);
     return vec4(mean, x, y, z);
 }
+vec4 harmonics_of(vec4 moments, float each)
+{
+    precise float mean = each * (0.282094792f * moments.x);
+    precise float y = each * (0.488602512f * moments.z);
+    precise float z = each * (0.488602512f * moments.w);
+    precise float x = each * (0.488602512f * moments.y);
+    return vec4(mean, y, z, x);
+}
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
     const float over_pi = 0.318309886f;
@@ -205,14 +213,17 @@ vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 }
 layout(std430, binding = 0) readonly buffer samples_buffer { gather_sample samples[]; };
 layout(std430, binding = 1) readonly buffer hits_buffer { gather_hit hits[]; };
-layout(std430, binding = 2) readonly buffer before_buffer { vec4 before[]; };
-layout(std430, binding = 3) writeonly buffer direct_buffer { vec4 direct[]; };
+layout(std430, binding = 2) readonly buffer arriving_buffer { vec4 arriving[]; };
+layout(std430, binding = 3) readonly buffer before_buffer { vec4 before[]; };
+layout(std430, binding = 4) writeonly buffer direct_buffer { vec4 direct[]; };
 void kernel_map(uint i) {
     vec3 n = samples[i].normal;
     precise float along = (n.x * direction.x + n.y * direction.y) + n.z * direction.z;
     bool lit = along > 0.0 && weight_of_sample(samples[i], direction) > 0.0 &&
                hits[i].surface == 0xffffffffu;
-    precise vec4 sum = before[i] + irradiance * (lit ? along : 0.0);
+    float part = dimmed != 0u ? arriving[i].y : 1.0;
+    precise float light = lit ? along * part : 0.0;
+    precise vec4 sum = before[i] + irradiance * light;
     direct[i] = sum;
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
@@ -234,7 +245,7 @@ void main() {
 #define writeonly coherent writeonly
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 256) in;
-#define KERNEL_PARAMETERS vec4 direction; vec4 irradiance;
+#define KERNEL_PARAMETERS vec4 direction; vec4 irradiance; uint dimmed;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -412,6 +423,14 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
     precise float z = sum.w + radiance * (side * direction.z);
     return vec4(mean, x, y, z);
 }
+vec4 harmonics_of(vec4 moments, float each)
+{
+    precise float mean = each * (0.282094792f * moments.x);
+    precise float y = each * (0.488602512f * moments.z);
+    precise float z = each * (0.488602512f * moments.w);
+    precise float x = each * (0.488602512f * moments.y);
+    return vec4(mean, y, z, x);
+}
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
     const float over_pi = 0.318309886f;
@@ -425,14 +444,17 @@ vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 }
 layout(std430, binding = 0) readonly buffer samples_buffer { gather_sample samples[]; };
 layout(std430, binding = 1) readonly buffer hits_buffer { gather_hit hits[]; };
-layout(std430, binding = 2) readonly buffer before_buffer { vec4 before[]; };
-layout(std430, binding = 3) writeonly buffer direct_buffer { vec4 direct[]; };
+layout(std430, binding = 2) readonly buffer arriving_buffer { vec4 arriving[]; };
+layout(std430, binding = 3) readonly buffer before_buffer { vec4 before[]; };
+layout(std430, binding = 4) writeonly buffer direct_buffer { vec4 direct[]; };
 void kernel_map(uint i) {
     vec3 n = samples[i].normal;
     precise float along = (n.x * direction.x + n.y * direction.y) + n.z * direction.z;
     bool lit = along > 0.0 && weight_of_sample(samples[i], direction) > 0.0 &&
                hits[i].surface == 0xffffffffu;
-    precise vec4 sum = before[i] + irradiance * (lit ? along : 0.0);
+    float part = dimmed != 0u ? arriving[i].y : 1.0;
+    precise float light = lit ? along * part : 0.0;
+    precise vec4 sum = before[i] + irradiance * light;
     direct[i] = sum;
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 2a1dfdbb32f21ee6ef084d622056fa19ee13901bc6a99a6edfcd89b57dea4725
+// sha256 8b3e85fa04d02d1e117bc296eba55b9525258d5fad87740ac19091b1f6c34e17
 #pragma once
 
 #include <skybark/kernels/gathered_irradiance.hpp>
@@ -191,6 +191,14 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
     precise float y = sum.z + radiance * (side * direction.y);
     precise float z = sum.w + radiance * (side * direction.z);
     return vec4(mean, x, y, z);
+}
+vec4 harmonics_of(vec4 moments, float each)
+{
+    precise float mean = each * (0.282094792f * moments.x);
+    precise float y = each * (0.488602512f * moments.z);
+    precise float z = each * (0.488602512f * moments.w);
+    precise float x = each * (0.488602512f * moments.y);
+    return vec4(mean, y, z, x);
 }
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
@@ -423,6 +431,14 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
     precise float y = sum.z + radiance * (side * direction.y);
     precise float z = sum.w + radiance * (side * direction.z);
     return vec4(mean, x, y, z);
+}
+vec4 harmonics_of(vec4 moments, float each)
+{
+    precise float mean = each * (0.282094792f * moments.x);
+    precise float y = each * (0.488602512f * moments.z);
+    precise float z = each * (0.488602512f * moments.w);
+    precise float x = each * (0.488602512f * moments.y);
+    return vec4(mean, y, z, x);
 }
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {

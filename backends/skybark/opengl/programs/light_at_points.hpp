@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 56554bfd988868082453ad45c0ca6175913a4c2fc0525c451e4bf1bf16e37a10
+// sha256 ab5d8063edff3b7d9cd7c8d1f2eb194a2ef995d6aec594d293e1a8cb25b82c39
 #pragma once
 
 #include <skybark/kernels/light_at_points.hpp>
@@ -118,7 +118,7 @@ struct patch_table {
     uint rows;
     uint reserved;
 };
-#define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation; float diffuse;
+#define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation; float diffuse; uint stride;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -329,7 +329,7 @@ float value_at(int n, vec3 cells, vec3 ends) {
     return low + (high - low) * part.y;
 }
 void kernel_map(uint i) {
-    vec3 cells = cells_of(grid, places[i].xyz);
+    vec3 cells = cells_of(grid, places[i * stride].xyz);
     vec3 size = vec3(size_of(0));
     float attenuation = value_at(0, cells, size);
     float light = octaves_light(attenuation, octaves, octave_weight, octave_attenuation);
@@ -459,7 +459,7 @@ struct patch_table {
     uint rows;
     uint reserved;
 };
-#define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation; float diffuse;
+#define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation; float diffuse; uint stride;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
 #define SKYBARK_VERTEX_INDEX gl_VertexIndex
@@ -670,7 +670,7 @@ float value_at(int n, vec3 cells, vec3 ends) {
     return low + (high - low) * part.y;
 }
 void kernel_map(uint i) {
-    vec3 cells = cells_of(grid, places[i].xyz);
+    vec3 cells = cells_of(grid, places[i * stride].xyz);
     vec3 size = vec3(size_of(0));
     float attenuation = value_at(0, cells, size);
     float light = octaves_light(attenuation, octaves, octave_weight, octave_attenuation);

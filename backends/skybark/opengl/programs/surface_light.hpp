@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 397e1050619d210842269c668d05c16cddf4f500ed349de1d4c9a5579d32e5a5
+// sha256 aa80fb977ca5d3d097e9c039095a25715704d6476c936b8e598a26e858bd7338
 #pragma once
 
 #include <skybark/kernels/surface_light.hpp>
@@ -190,6 +190,14 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
     precise float y = sum.z + radiance * (side * direction.y);
     precise float z = sum.w + radiance * (side * direction.z);
     return vec4(mean, x, y, z);
+}
+vec4 harmonics_of(vec4 moments, float each)
+{
+    precise float mean = each * (0.282094792f * moments.x);
+    precise float y = each * (0.488602512f * moments.z);
+    precise float z = each * (0.488602512f * moments.w);
+    precise float x = each * (0.488602512f * moments.y);
+    return vec4(mean, y, z, x);
 }
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {
@@ -414,6 +422,14 @@ vec4 moment_sum(vec4 sum, float radiance, vec4 direction, float side)
     precise float y = sum.z + radiance * (side * direction.y);
     precise float z = sum.w + radiance * (side * direction.z);
     return vec4(mean, x, y, z);
+}
+vec4 harmonics_of(vec4 moments, float each)
+{
+    precise float mean = each * (0.282094792f * moments.x);
+    precise float y = each * (0.488602512f * moments.z);
+    precise float z = each * (0.488602512f * moments.w);
+    precise float x = each * (0.488602512f * moments.y);
+    return vec4(mean, y, z, x);
 }
 vec4 leaving_radiance(gather_material material, vec4 here, vec4 behind)
 {

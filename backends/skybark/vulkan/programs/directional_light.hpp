@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 cbfec5563472f609a1887178a4f1031e7da88f54d786f17941aea5285937e57b
+// sha256 3b4d7d4fc05e420fc508102f6835be2963aefb8c24a4b4831dcaed8e235d4a6c
 #pragma once
 
 #include <skybark/kernels/directional_light.hpp>

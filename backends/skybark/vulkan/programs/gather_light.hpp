@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ce0b17456c5d6e17a8fb2c5d07395544a79cbba115e499246ccef4dc6676d62b
+// sha256 ca28601e04df3ed87c832b0368a641f3b49d9528e5711c8fe80e9c8de1eaf04f
 #pragma once
 
 #include <skybark/kernels/gather_light.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d102f573cbdbf8c4129d3d40b8cff2d14aedc74a33b4560ac841866ad8c471ee
+// sha256 5876f8430396ea837fecae72b25de7a0fb7838d1131769828af42107ab263ce8
 #pragma once
 
 #include <skybark/kernels/gathered_irradiance.hpp>

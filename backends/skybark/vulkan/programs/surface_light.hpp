@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 2572c5a4debcbda50927d27a8b8b1d43c7f4300bb4b9f464f6632818a7c27a49
+// sha256 b0547a0e8ac4abb3dbdb05c74929b541ba5cd3b8f4e478ddb480a97eff4b29c7
 #pragma once
 
 #include <skybark/kernels/surface_light.hpp>
