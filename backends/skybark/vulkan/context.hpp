@@ -4,6 +4,7 @@
 // device itself may move.
 
 #include <skybark/core/backend.hpp>
+#include <skybark/core/hooks.hpp>
 #include <skybark/vulkan/functions.hpp>
 
 #include <algorithm>
@@ -16,6 +17,41 @@ enum class expansion {
     automatic,    ///< `per_element` on a CPU, `per_vertices` on a GPU
     per_element,  ///< a long run of one element's vertices an invocation
     per_vertices, ///< a few vertices an invocation, neighbours in memory beside each other
+};
+
+/// Where memory should lie. Every choice falls back to what the device has.
+enum class memory_kind {
+    device,   ///< fastest for the device; the host writes to it only where the memory is unified
+    upload,   ///< written by the host, read by the device
+    download, ///< written by the device, read by the host
+};
+
+/// Memory that a buffer or an image of ours needs.
+struct memory_request {
+    VkMemoryRequirements need{};
+    memory_kind kind = memory_kind::device;
+    std::uint32_t type = 0; ///< the memory type that we would take: `need` allows it
+    bool mapped = false;    ///< must be host visible, host coherent, and mapped as long as it lives
+    VkBuffer buffer = VK_NULL_HANDLE; ///< what it is for: one of these is null
+    VkImage image = VK_NULL_HANDLE;   ///< with optimal tiling
+};
+
+/// A piece of memory of the caller's.
+struct memory_piece {
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VkDeviceSize offset = 0;    ///< a multiple of what the request needs
+    void* mapped = nullptr;     ///< where the host sees the piece's first byte, if asked for
+    void* allocation = nullptr; ///< the caller's own: comes back with `free`
+};
+
+/// Where device memory comes from: an engine's heap, or VMA. Both or none; without, each buffer and
+/// image gets an allocation of its own.
+struct memory_hooks {
+    void* user = nullptr; ///< given to both
+    /// Fills in `piece`, or returns what Vulkan returned.
+    VkResult (*allocate)(void* user, const memory_request& request, memory_piece& piece) = nullptr;
+    /// After the buffer or image was destroyed.
+    void (*free)(void* user, const memory_piece& piece) = nullptr;
 };
 
 /// The caller's device. Nothing in it is owned, and all of it must outlive our device.
@@ -31,11 +67,16 @@ struct device_description {
     std::uint32_t queue_family = 0;
     PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
     PFN_vkGetDeviceProcAddr get_device_proc_addr = nullptr; ///< may be null
+    /// For the host memory of what we create; given to every call that takes them.
     const VkAllocationCallbacks* allocation_callbacks = nullptr;
+    memory_hooks memory = {};
+    skybark::hooks hooks = {};
 
     bool synchronization2 = false;  ///< enabled by the caller, as we rely on it
     bool dynamic_rendering = false; ///< the same
-    bool debug_utils = false;       ///< VK_EXT_debug_utils is enabled: objects get names
+    /// VK_EXT_debug_utils is enabled: all that we create gets a name that begins with "skybark",
+    /// and every pattern a label in the command buffer.
+    bool debug_utils = false;
     /// Enabled by the caller. Needed for volumes of float16 alone.
     bool shader_storage_image_extended_formats = false;
 
@@ -109,6 +150,7 @@ class context {
     /// Bound where a program declares a buffer that a call does not use.
     slice unused;
     bool lost = false;
+    bool watched = false; ///< patterns have zones or labels
 
     [[nodiscard]] VkDevice device() const noexcept { return description.device; }
     [[nodiscard]] const VkAllocationCallbacks* callbacks() const noexcept {
@@ -131,11 +173,29 @@ class context {
             return {};
         }
         if (returned == VK_ERROR_DEVICE_LOST) {
+            if (!lost) {
+                say(log_level::error, [this] {
+                    return "The Vulkan device " + std::string(properties.deviceName) +
+                           " was lost (VK_ERROR_DEVICE_LOST).";
+                });
+            }
             lost = true;
             return alive();
         }
         return fail(code_of(returned),
                     "Vulkan could not " + std::string(what) + ": " + to_string(returned) + ".");
+    }
+
+    template <class Text>
+    void say(log_level level, Text&& text) const {
+        log(description.hooks, level, text);
+    }
+    /// Resources that were made, with what they take.
+    void say_made(const char* what, VkDeviceSize bytes) const {
+        say(log_level::debug, [&] {
+            return std::string(properties.deviceName) + " has made one " + what + " of " +
+                   std::to_string(bytes) + " bytes.";
+        });
     }
 
     [[nodiscard]] bool on_cpu() const noexcept {
@@ -178,6 +238,19 @@ class context {
         }
     }
 
+    /// The name of one of our own: "skybark ", what it is, and its bytes, if any.
+    template <class Handle>
+    void name_own(VkObjectType type, Handle handle, const char* what,
+                  VkDeviceSize bytes = 0) const {
+        if (call.set_object_name) {
+            std::string text = std::string("skybark ") + what;
+            if (bytes != 0) {
+                text += " of " + std::to_string(bytes) + " bytes";
+            }
+            name(type, handle, text.c_str());
+        }
+    }
+
   private:
     [[nodiscard]] static error_code code_of(VkResult returned) noexcept {
         switch (returned) {
@@ -196,4 +269,49 @@ class context {
     }
 };
 
+namespace detail {
+
+/// A pattern: a zone of the hooks, and a label in the command buffer. Without both, a branch.
+class pattern_scope {
+  public:
+    pattern_scope(const context& c, VkCommandBuffer commands, const char* name) {
+        if (c.watched) {
+            begin(c, commands, name);
+        }
+    }
+    pattern_scope(const pattern_scope&) = delete;
+    pattern_scope& operator=(const pattern_scope&) = delete;
+    ~pattern_scope() {
+        if (context_) {
+            end();
+        }
+    }
+
+  private:
+    void begin(const context& c, VkCommandBuffer commands, const char* name) {
+        context_ = &c;
+        if (const hooks& h = c.description.hooks; h.begin_zone) {
+            h.begin_zone(h.user, name);
+        }
+        if (c.call.begin_label && c.call.end_label && commands != VK_NULL_HANDLE) {
+            commands_ = commands;
+            auto label = make<VkDebugUtilsLabelEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT);
+            label.pLabelName = name;
+            c.call.begin_label(commands, &label);
+        }
+    }
+    void end() {
+        if (commands_ != VK_NULL_HANDLE) {
+            context_->call.end_label(commands_);
+        }
+        if (const hooks& h = context_->description.hooks; h.end_zone) {
+            h.end_zone(h.user);
+        }
+    }
+
+    const context* context_ = nullptr; ///< null: nobody looks
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+};
+
+} // namespace detail
 } // namespace skybark::vulkan

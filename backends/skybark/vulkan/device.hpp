@@ -224,16 +224,23 @@ inline result<device> device::create(const device_description& description) {
         return failure(table.error());
     }
     c.call = *table;
+    c.watched = description.hooks.has_zones() || c.call.begin_label;
     if (auto done = fill_in(c); !done) {
         return failure(done.error());
     }
-    auto unused = detail::make_buffer_memory(c, 256, memory_kind::device);
+    auto unused = detail::make_buffer_memory(c, 256, memory_kind::device, "spare buffer");
     if (!unused) {
         return failure(unused.error());
     }
     state->unused = *unused;
     c.unused = {unused->buffer, 0, unused->size};
-    c.name(VK_OBJECT_TYPE_BUFFER, unused->buffer, "skybark: a buffer that is not used");
+    c.say(log_level::info, [&c] {
+        const std::uint32_t v = c.properties.apiVersion;
+        return "The vulkan device is " + std::string(c.properties.deviceName) + ", Vulkan " +
+               std::to_string(VK_API_VERSION_MAJOR(v)) + "." +
+               std::to_string(VK_API_VERSION_MINOR(v)) + ", driver " +
+               std::to_string(c.properties.driverVersion) + ".";
+    });
     return device(std::move(state));
 }
 

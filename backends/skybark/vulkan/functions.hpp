@@ -91,7 +91,10 @@ struct functions {
     PFN_vkCmdDrawIndirect draw_indirect = nullptr;
     PFN_vkCmdDrawIndexedIndirect draw_indexed_indirect = nullptr;
 
+    // Null unless VK_EXT_debug_utils was enabled.
     PFN_vkSetDebugUtilsObjectNameEXT set_object_name = nullptr;
+    PFN_vkCmdBeginDebugUtilsLabelEXT begin_label = nullptr;
+    PFN_vkCmdEndDebugUtilsLabelEXT end_label = nullptr;
 };
 
 namespace detail {
@@ -192,7 +195,7 @@ void load_command_functions(functions& f, Load& load) {
 } // namespace detail
 
 /// The table of one device. `get_device_proc_addr` may be null: it is then asked of the instance.
-/// Object names are left out unless VK_EXT_debug_utils was enabled.
+/// Names and labels are left out unless VK_EXT_debug_utils was enabled.
 [[nodiscard]] inline result<functions> load_functions(VkInstance instance, VkDevice device,
                                                       PFN_vkGetInstanceProcAddr get_instance_proc,
                                                       PFN_vkGetDeviceProcAddr get_device_proc,
@@ -225,6 +228,8 @@ void load_command_functions(functions& f, Load& load) {
         detail::loader optional(
             [&](const char* name) { return get_instance_proc(instance, name); });
         optional(f.set_object_name, "vkSetDebugUtilsObjectNameEXT");
+        optional(f.begin_label, "vkCmdBeginDebugUtilsLabelEXT");
+        optional(f.end_label, "vkCmdEndDebugUtilsLabelEXT");
     }
     return f;
 }

@@ -33,6 +33,8 @@ struct headless_options {
     expansion expand_by = expansion::automatic;
     bool always_stage = false;
     bool omit_barriers = false;
+    memory_hooks memory = {};
+    skybark::hooks hooks = {};
 };
 
 /// A physical device, for people to choose from.
@@ -355,6 +357,8 @@ inline result<headless> headless::create(headless_options options) {
     description.expand_by = options.expand_by;
     description.always_stage = options.always_stage;
     description.omit_barriers = options.omit_barriers;
+    description.memory = options.memory;
+    description.hooks = options.hooks;
     auto device = vulkan::device::create(description);
     if (!device) {
         return failure(device.error());

@@ -99,8 +99,12 @@ class image {
         info.format = p.foreign.format;
         info.subresourceRange = {aspect_of(p.foreign.description.format), 0, 1, 0, 1};
         p.filterable = c.filters(info.format);
-        return c.check(c.call.create_image_view(c.device(), &info, c.callbacks(), &p.view),
-                       "make a view of an image");
+        auto done = c.check(c.call.create_image_view(c.device(), &info, c.callbacks(), &p.view),
+                            "make a view of an image");
+        if (done) {
+            c.name_own(VK_OBJECT_TYPE_IMAGE_VIEW, p.view, "view of an image");
+        }
+        return done;
     }
 
     /// One of our own, its layout still undefined.
@@ -144,15 +148,19 @@ class image {
         if (!done) {
             return done;
         }
+        c.name_own(VK_OBJECT_TYPE_IMAGE, p.foreign.image, "image");
         VkMemoryRequirements need{};
         c.call.get_image_memory_requirements(c.device(), p.foreign.image, &need);
-        auto memory = detail::allocate(c, need, memory_kind::device);
+        auto memory =
+            detail::allocate(c, need, memory_kind::device, VK_NULL_HANDLE, p.foreign.image);
         if (!memory) {
             return failure(memory.error());
         }
         p.memory = *memory;
-        return c.check(c.call.bind_image_memory(c.device(), p.foreign.image, p.memory.memory, 0),
-                       sentence);
+        c.say_made("image", need.size);
+        return c.check(
+            c.call.bind_image_memory(c.device(), p.foreign.image, p.memory.memory, p.memory.offset),
+            sentence);
     }
 
     context* context_;

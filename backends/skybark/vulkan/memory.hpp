@@ -1,5 +1,6 @@
 #pragma once
-// Device memory, one allocation a resource, and VkBuffers with their memory.
+// Device memory, one allocation a resource or a piece of the caller's, and VkBuffers with their
+// memory.
 
 #include <skybark/vulkan/context.hpp>
 
@@ -7,13 +8,6 @@
 #include <utility>
 
 namespace skybark::vulkan {
-
-/// Where memory should lie. Every choice falls back to what the device has.
-enum class memory_kind {
-    device,   ///< fastest for the device; the host writes to it only where the memory is unified
-    upload,   ///< written by the host, read by the device
-    download, ///< written by the device, read by the host
-};
 
 namespace detail {
 
@@ -63,19 +57,72 @@ inline constexpr VkMemoryPropertyFlags host_coherent =
 
 struct allocation {
     VkDeviceMemory memory = VK_NULL_HANDLE;
+    VkDeviceSize offset = 0;
     std::byte* mapped = nullptr; ///< where the host sees it, or null
+    void* of_caller = nullptr;   ///< memory_piece::allocation
 };
 
 inline void release(const context& c, allocation& a) {
-    if (a.memory != VK_NULL_HANDLE) {
-        c.call.free_memory(c.device(), a.memory, c.callbacks()); // unmaps it as well
-        a = {};
+    if (a.memory == VK_NULL_HANDLE) {
+        return;
     }
+    if (const memory_hooks& h = c.description.memory; h.allocate) {
+        h.free(h.user, {a.memory, a.offset, a.mapped, a.of_caller});
+    } else {
+        c.call.free_memory(c.device(), a.memory, c.callbacks()); // unmaps it as well
+    }
+    a = {};
 }
 
-/// Memory for `need`, mapped for as long as it lives where the host may see it.
+[[nodiscard]] inline result<allocation> allocate_of_caller(context& c,
+                                                           const memory_request& request) {
+    const memory_hooks& h = c.description.memory;
+    memory_piece piece;
+    const std::string size = std::to_string(request.need.size) + " bytes";
+    if (auto done =
+            c.check(h.allocate(h.user, request, piece), "have " + size + " from its caller");
+        !done) {
+        return failure(done.error());
+    }
+    allocation made{piece.memory, piece.offset,
+                    request.mapped ? static_cast<std::byte*>(piece.mapped) : nullptr,
+                    piece.allocation};
+    if (piece.memory == VK_NULL_HANDLE || (request.mapped && piece.mapped == nullptr)) {
+        release(c, made);
+        return fail(error_code::out_of_memory,
+                    "The caller's memory of " + size + " is null, or not mapped.");
+    }
+    return made;
+}
+
+[[nodiscard]] inline result<allocation> allocate_own(context& c, const memory_request& request) {
+    const std::string size = std::to_string(request.need.size) + " bytes";
+    auto info = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+    info.allocationSize = request.need.size;
+    info.memoryTypeIndex = request.type;
+    allocation made;
+    auto done = c.check(c.call.allocate_memory(c.device(), &info, c.callbacks(), &made.memory),
+                        "allocate " + size);
+    if (done) {
+        c.name_own(VK_OBJECT_TYPE_DEVICE_MEMORY, made.memory, "memory", request.need.size);
+    }
+    if (done && request.mapped) {
+        void* mapped = nullptr;
+        done = c.check(c.call.map_memory(c.device(), made.memory, 0, VK_WHOLE_SIZE, 0, &mapped),
+                       "map " + size);
+        made.mapped = static_cast<std::byte*>(mapped);
+    }
+    if (!done) {
+        release(c, made);
+        return failure(done.error());
+    }
+    return made;
+}
+
+/// Memory for `need`, mapped for as long as it lives where the host may see it. It is for `buffer`
+/// or for `image`.
 [[nodiscard]] inline result<allocation> allocate(context& c, const VkMemoryRequirements& need,
-                                                 memory_kind kind) {
+                                                 memory_kind kind, VkBuffer buffer, VkImage image) {
     const std::string size = std::to_string(need.size) + " bytes";
     if (need.size > c.max_allocation) {
         return fail(error_code::out_of_memory, "This Vulkan device allocates at most " +
@@ -87,24 +134,14 @@ inline void release(const context& c, allocation& a) {
         return fail(error_code::unavailable,
                     "This Vulkan device has no memory of the kind needed for " + size + ".");
     }
-    auto info = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-    info.allocationSize = need.size;
-    info.memoryTypeIndex = static_cast<std::uint32_t>(type);
-    allocation made;
-    auto done = c.check(c.call.allocate_memory(c.device(), &info, c.callbacks(), &made.memory),
-                        "allocate " + size);
     const VkMemoryPropertyFlags flags = c.memory.memoryTypes[type].propertyFlags;
     const bool map =
         kind != memory_kind::device || (c.unified() && (flags & host_coherent) == host_coherent);
-    if (done && map) {
-        void* mapped = nullptr;
-        done = c.check(c.call.map_memory(c.device(), made.memory, 0, VK_WHOLE_SIZE, 0, &mapped),
-                       "map " + size);
-        made.mapped = static_cast<std::byte*>(mapped);
-    }
-    if (!done) {
-        release(c, made);
-        return failure(done.error());
+    const memory_request request{need, kind, static_cast<std::uint32_t>(type), map, buffer, image};
+    auto made =
+        c.description.memory.allocate ? allocate_of_caller(c, request) : allocate_own(c, request);
+    if (!made) {
+        c.say(log_level::warning, [&] { return made.error().message; });
     }
     return made;
 }
@@ -129,9 +166,9 @@ inline constexpr VkBufferUsageFlags every_usage =
     VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
 
-/// `size` bytes, not 0, of undefined content.
+/// `size` bytes, not 0, of undefined content. `name` says what for, as in "buffer".
 [[nodiscard]] inline result<buffer_memory> make_buffer_memory(context& c, VkDeviceSize size,
-                                                              memory_kind kind) {
+                                                              memory_kind kind, const char* name) {
     if (size > c.max_allocation) { // before Vulkan sees a size that it need not check
         return fail(error_code::out_of_memory,
                     "A buffer of " + std::to_string(size) +
@@ -148,19 +185,23 @@ inline constexpr VkBufferUsageFlags every_usage =
     if (!done) {
         return failure(done.error());
     }
+    c.name_own(VK_OBJECT_TYPE_BUFFER, made.buffer, name, size);
     VkMemoryRequirements need{};
     c.call.get_buffer_memory_requirements(c.device(), made.buffer, &need);
-    auto memory = allocate(c, need, kind);
+    auto memory = allocate(c, need, kind, made.buffer, VK_NULL_HANDLE);
     if (!memory) {
         release(c, made);
         return failure(memory.error());
     }
     made.memory = *memory;
-    done = c.check(c.call.bind_buffer_memory(c.device(), made.buffer, made.memory.memory, 0), what);
+    done = c.check(
+        c.call.bind_buffer_memory(c.device(), made.buffer, made.memory.memory, made.memory.offset),
+        what);
     if (!done) {
         release(c, made);
         return failure(done.error());
     }
+    c.say_made(name, size);
     return made;
 }
 

@@ -110,6 +110,10 @@ class pipeline_cache {
                 release(*made);
                 return failure(done.error());
             }
+            context_->name_own(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, made->set,
+                               shape.draws ? "set layout, draws" : "set layout, compute");
+            context_->name_own(VK_OBJECT_TYPE_PIPELINE_LAYOUT, made->pipeline,
+                               shape.draws ? "pipeline layout, draws" : "pipeline layout, compute");
             l = std::move(made);
         }
         return l.get();
@@ -120,9 +124,8 @@ class pipeline_cache {
         if (const auto found = compute_.find(words.data()); found != compute_.end()) {
             return found->second;
         }
-        auto made = make_compute(words, shape);
+        auto made = watch_compilation(name, [&] { return make_compute(words, shape, name); });
         if (made) {
-            context_->name(VK_OBJECT_TYPE_PIPELINE, *made, name);
             compute_.emplace(words.data(), *made);
         }
         return made;
@@ -139,9 +142,8 @@ class pipeline_cache {
         if (const auto found = draw_.find(key); found != draw_.end()) {
             return found->second;
         }
-        auto made = make_draw(program);
+        auto made = watch_compilation(name, [&] { return make_draw(program, name); });
         if (made) {
-            context_->name(VK_OBJECT_TYPE_PIPELINE, *made, name);
             draw_.emplace(key, *made);
         }
         return made;
@@ -165,12 +167,36 @@ class pipeline_cache {
                 !done) {
                 return failure(done.error());
             }
+            context_->name_own(VK_OBJECT_TYPE_SAMPLER, sampler, "sampler");
         }
         return sampler;
     }
 
   private:
     using draw_key = std::tuple<const void*, VkFormat, VkFormat, bool, bool, blend_mode, cull_mode>;
+
+    /// Names what was made, and logs how long it took, or why it was not.
+    template <class Make>
+    [[nodiscard]] result<VkPipeline> watch_compilation(const char* name, Make&& make_pipeline) {
+        const context& c = *context_;
+        const bool logs = c.description.hooks.log != nullptr;
+        const double begin = logs ? skybark::detail::milliseconds_now() : 0;
+        auto made = make_pipeline();
+        if (made) {
+            c.name_own(VK_OBJECT_TYPE_PIPELINE, *made, name);
+            c.say(log_level::debug, [&] {
+                return std::string(c.properties.deviceName) + " has compiled \"" + name + "\" in " +
+                       skybark::detail::milliseconds_text(skybark::detail::milliseconds_now() -
+                                                          begin) +
+                       ".";
+            });
+        } else {
+            c.say(log_level::error, [&] {
+                return std::string("No program \"") + name + "\": " + made.error().message;
+            });
+        }
+        return made;
+    }
 
     void release(const program_layout& l) {
         const context& c = *context_;
@@ -217,7 +243,7 @@ class pipeline_cache {
                        "make a pipeline layout");
     }
 
-    [[nodiscard]] result<VkShaderModule> make_module(spirv_words words) {
+    [[nodiscard]] result<VkShaderModule> make_module(spirv_words words, const char* name) {
         context& c = *context_;
         auto info = make<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
         info.codeSize = words.size_bytes();
@@ -228,6 +254,7 @@ class pipeline_cache {
             !done) {
             return failure(done.error());
         }
+        c.name_own(VK_OBJECT_TYPE_SHADER_MODULE, module, name);
         return module;
     }
 
@@ -250,13 +277,14 @@ class pipeline_cache {
         return info;
     }
 
-    [[nodiscard]] result<VkPipeline> make_compute(spirv_words words, const layout_shape& shape) {
+    [[nodiscard]] result<VkPipeline> make_compute(spirv_words words, const layout_shape& shape,
+                                                  const char* name) {
         context& c = *context_;
         auto l = layout(shape);
         if (!l) {
             return failure(l.error());
         }
-        auto module = make_module(words);
+        auto module = make_module(words, name);
         if (!module) {
             return failure(module.error());
         }
@@ -274,13 +302,13 @@ class pipeline_cache {
         return pipeline;
     }
 
-    [[nodiscard]] result<VkPipeline> make_draw(const draw_program& program) {
+    [[nodiscard]] result<VkPipeline> make_draw(const draw_program& program, const char* name) {
         context& c = *context_;
-        auto vertex = make_module(program.vertex);
+        auto vertex = make_module(program.vertex, name);
         if (!vertex) {
             return failure(vertex.error());
         }
-        auto fragment = make_module(program.fragment);
+        auto fragment = make_module(program.fragment, name);
         result<VkPipeline> made = fragment ? make_draw(program, *vertex, *fragment)
                                            : result<VkPipeline>(failure(fragment.error()));
         c.call.destroy_shader_module(c.device(), *vertex, c.callbacks());

@@ -60,6 +60,7 @@ namespace detail {
 
 /// An expansion into a list, its types forgotten.
 struct list_call {
+    const char* name = "";
     spirv_words count;
     spirv_words write;
     push_block push;
@@ -111,6 +112,7 @@ struct work_plan {
 
 /// A draw, its types forgotten.
 struct draw_call {
+    const char* name = "";
     draw_program program;
     push_block push;
     std::array<slice, max_kernel_buffers> buffers{};
@@ -127,6 +129,7 @@ struct bundle_parameters;
 
 /// A peel, its types forgotten.
 struct peel_call {
+    const char* name = "";
     spirv_words vertex;
     push_block push;
     std::array<slice, max_kernel_buffers + 1> buffers{}; ///< and the depths of the last layer
@@ -144,6 +147,7 @@ class recorder : private detail::stream {
   public:
     /// The bytes are copied before the call returns.
     void upload(const buffer_view<device>& to, std::span<const std::byte> bytes) {
+        const auto here = enter("upload");
         const slice target = bound(to);
         assert(bytes.size() <= target.size);
         if (bytes.empty() || !alive()) {
@@ -160,12 +164,14 @@ class recorder : private detail::stream {
 
     /// As many bytes as the smaller of the two has.
     void copy(const buffer_view<device>& from, const buffer_view<device>& to) {
+        const auto here = enter("copy");
         copy_slice(bound(from), bound(to));
     }
 
     template <map_kernel K>
     requires has_map_program<K>
     void map(const K& kernel, const bindings<device, K>& buffers, range elements) {
+        const auto here = enter(zone_name<pattern::map, K>());
         map_range(map_call(kernel, buffers), elements);
     }
 
@@ -174,6 +180,7 @@ class recorder : private detail::stream {
     requires has_map_program<K>
     void map(const K& kernel, const bindings<device, K>& buffers,
              std::span<const range> consecutive) {
+        const auto here = enter(zone_name<pattern::map, K>());
         detail::compute_call levels = map_call(kernel, buffers);
         levels.words = program<K>::levels_comp;
         map_ranges(map_call(kernel, buffers), levels, consecutive);
@@ -182,6 +189,7 @@ class recorder : private detail::stream {
     template <map_kernel K>
     requires has_map_program<K>
     void map(const K& kernel, const bindings<device, K>& buffers, const counted<device>& elements) {
+        const auto here = enter(zone_name<pattern::map, K>());
         map_counted(map_call(kernel, buffers), bound(elements.count), elements.limit);
     }
 
@@ -189,6 +197,7 @@ class recorder : private detail::stream {
     requires has_strip_program<K>
     void expand(const K& kernel, const bindings<device, K>& buffers, range elements,
                 const triangle_list<device>& out) {
+        const auto here = enter(zone_name<pattern::expand, K>());
         detail::list_call call = list_call(kernel, buffers, out);
         call.elements = elements;
         expand_list(call);
@@ -198,6 +207,7 @@ class recorder : private detail::stream {
     requires has_strip_program<K>
     void expand(const K& kernel, const bindings<device, K>& buffers,
                 const counted<device>& elements, const triangle_list<device>& out) {
+        const auto here = enter(zone_name<pattern::expand, K>());
         detail::list_call call = list_call(kernel, buffers, out);
         call.elements = {0, elements.limit};
         call.length = bound(elements.count);
@@ -209,8 +219,9 @@ class recorder : private detail::stream {
     requires has_ring_program<K>
     void expand_rings(const K& kernel, const bindings<device, K>& buffers, range elements,
                       const buffer_view<device>& vertices) {
+        const auto here = enter(zone_name<pattern::expand_rings, K>());
         detail::compute_call call{program<K>::rings_comp,
-                                  "skybark: rings",
+                                  zone_name<pattern::expand_rings, K>(),
                                   detail::push_of(kernel),
                                   bound_all(buffers),
                                   {}};
@@ -222,6 +233,7 @@ class recorder : private detail::stream {
     requires has_slab_program<K>
     void accumulate(const K& kernel, const bindings<device, K>& buffers, range elements,
                     const accumulation<device>& out) {
+        const auto here = enter(zone_name<pattern::accumulate, K>());
         accumulate_slabs({slab_pass(kernel, buffers), elements, {}, kernel.slabs()}, out);
     }
 
@@ -229,6 +241,7 @@ class recorder : private detail::stream {
     requires has_slab_program<K>
     void accumulate(const K& kernel, const bindings<device, K>& buffers,
                     const counted<device>& elements, const accumulation<device>& out) {
+        const auto here = enter(zone_name<pattern::accumulate, K>());
         accumulate_slabs({slab_pass(kernel, buffers),
                           {0, elements.limit},
                           bound(elements.count),
@@ -240,6 +253,7 @@ class recorder : private detail::stream {
     requires has_map_program<K>
     void map(const K& kernel, const bindings<device, K>& buffers,
              const volume_bindings<device, K>& volumes, range elements) {
+        const auto here = enter(zone_name<pattern::map, K>());
         detail::compute_call call = map_call(kernel, buffers);
         add_volumes(call.images, volumes);
         map_range(call, elements);
@@ -249,8 +263,9 @@ class recorder : private detail::stream {
     requires has_voxel_program<K>
     void map_voxels(const K& kernel, const bindings<device, K>& buffers,
                     const volume_bindings<device, K>& volumes, glm::uvec3 extent) {
+        const auto here = enter(zone_name<pattern::map_voxels, K>());
         detail::compute_call call{program<K>::voxels_comp,
-                                  "skybark: voxels",
+                                  zone_name<pattern::map_voxels, K>(),
                                   detail::push_of(kernel),
                                   bound_all(buffers),
                                   {}};
@@ -265,6 +280,7 @@ class recorder : private detail::stream {
                                      const image_bindings<device, K>& images,
                                      const draw_geometry<device>& geometry,
                                      const draw_target<device>& target, draw_state state) {
+        const auto here = enter(zone_name<pattern::draw, K>());
         detail::draw_call call = draw_call(kernel, buffers, images, geometry, state);
         draw(call, target);
     }
@@ -275,6 +291,7 @@ class recorder : private detail::stream {
               const image_bindings<device, K>& images, const volume_bindings<device, K>& volumes,
               const draw_geometry<device>& geometry, const draw_target<device>& target,
               draw_state state) {
+        const auto here = enter(zone_name<pattern::draw, K>());
         detail::draw_call call = draw_call(kernel, buffers, images, geometry, state);
         add_volumes(call.images, volumes);
         draw(call, target);
@@ -285,7 +302,9 @@ class recorder : private detail::stream {
     requires has_peel_program<K>
     void peel(const K& kernel, const bindings<device, K>& buffers, range triangles,
               const peeled_layer<device>& layer) {
+        const auto here = enter(zone_name<pattern::peel, K>());
         detail::peel_call call;
+        call.name = zone_name<pattern::peel, K>();
         call.vertex = program<K>::peel_vert;
         call.push = detail::push_of(kernel);
         for (std::size_t i = 0; i < buffers.size(); ++i) {
@@ -301,11 +320,13 @@ class recorder : private detail::stream {
     }
 
     void scan(const buffer_view<device>& words, const buffer_view<device>& total) {
+        const auto here = enter("scan");
         const slice values = bound(words);
         scan_words(values, static_cast<std::uint32_t>(values.size / 4), bound(total));
     }
 
     void scan(const volume& from, const volume& to, const volume_scan& how) {
+        const auto here = enter("scan volume");
         scan_volume(from, to, how);
     }
 
@@ -348,8 +369,11 @@ class recorder : private detail::stream {
     template <class K>
     [[nodiscard]] detail::compute_call map_call(const K& kernel,
                                                 const bindings<device, K>& buffers) {
-        return {
-            program<K>::map_comp, "skybark: map", detail::push_of(kernel), bound_all(buffers), {}};
+        return {program<K>::map_comp,
+                zone_name<pattern::map, K>(),
+                detail::push_of(kernel),
+                bound_all(buffers),
+                {}};
     }
 
     void map_range(detail::compute_call what, range elements) {
@@ -415,7 +439,7 @@ class recorder : private detail::stream {
         constexpr std::uint32_t block = 4096;
         const std::uint32_t blocks = std::max(1u, groups_of(count, block));
         const slice sums = blocks == 1 ? total : scratch(std::uint64_t{blocks} * 4);
-        detail::compute_call pass{scan_comp, "skybark: scan", {}, {}, {}};
+        detail::compute_call pass{scan_comp, "scan", {}, {}, {}};
         pass.push.set_header({0, count, 0, 0});
         pass.buffers[vertices_binding] = values;
         pass.buffers[offsets_binding] = values;
@@ -424,7 +448,7 @@ class recorder : private detail::stream {
         if (blocks > 1) {
             scan_words(sums, blocks, total);
             pass.words = scan_add_comp;
-            pass.name = "skybark: scan, sums of blocks";
+            pass.name = "scan, sums of blocks";
             dispatch(pass, groups_of(count, 256));
         }
     }
@@ -454,11 +478,8 @@ class recorder : private detail::stream {
 
     void scan_volume(const volume& from, const volume& to, const volume_scan& how) {
         const volume_description size = from.description();
-        detail::compute_call pass{scan_program(size.format, to.description().format),
-                                  "skybark: scan of a volume",
-                                  {},
-                                  {},
-                                  {}};
+        detail::compute_call pass{
+            scan_program(size.format, to.description().format), "scan of a volume", {}, {}, {}};
         add_volume(pass.images, sum_volumes, &from);
         add_volume(pass.images, target_volumes, &to);
         pass.push.set_header({static_cast<std::uint32_t>(how.axis),
@@ -485,7 +506,7 @@ class recorder : private detail::stream {
     [[nodiscard]] detail::compute_call slab_pass(const K& kernel,
                                                  const bindings<device, K>& buffers) {
         return {program<K>::accumulate_comp,
-                "skybark: accumulate",
+                zone_name<pattern::accumulate, K>(),
                 detail::push_of(kernel),
                 bound_all(buffers),
                 {}};
@@ -547,6 +568,7 @@ class recorder : private detail::stream {
     /// that the pairs end where they were.
     void sort_pairs(detail::pair_slices from, const slice& length, std::uint32_t limit,
                     std::uint32_t key_bits) {
+        const auto here = enter("sort");
         constexpr std::uint32_t block = 1024;
         constexpr std::uint32_t bits = 4;
         const auto count = static_cast<std::uint32_t>(
@@ -561,7 +583,7 @@ class recorder : private detail::stream {
         detail::pair_slices to{scratch(std::uint64_t{count} * 4),
                                scratch(std::uint64_t{count} * 4)};
         const std::uint32_t flags = length.buffer != VK_NULL_HANDLE ? detail::flag_counted : 0;
-        detail::compute_call pass{sort_count_comp, "skybark: sort, counts", {}, {}, {}};
+        detail::compute_call pass{sort_count_comp, "sort, counts", {}, {}, {}};
         pass.buffers[length_binding] = length;
         if (passes % 2 == 1) {
             copy_slice(from.keys, to.keys);
@@ -587,7 +609,7 @@ class recorder : private detail::stream {
     void scatter(detail::compute_call pass, const detail::pair_slices& from,
                  const detail::pair_slices& to, const slice& offsets, std::uint32_t blocks) {
         pass.words = sort_scatter_comp;
-        pass.name = "skybark: sort, scatter";
+        pass.name = "sort, scatter";
         pass.buffers[0] = to.keys;
         pass.buffers[1] = to.values;
         pass.buffers[2] = from.keys;
@@ -602,6 +624,7 @@ class recorder : private detail::stream {
     [[nodiscard]] detail::list_call list_call(const K& kernel, const bindings<device, K>& buffers,
                                               const triangle_list<device>& out) {
         detail::list_call call;
+        call.name = zone_name<pattern::expand, K>();
         call.count = program<K>::strip_counts_comp;
         call.write = program<K>::strips_comp;
         call.push = detail::push_of(kernel);
@@ -675,7 +698,7 @@ class recorder : private detail::stream {
 
     /// Each element's number of triangles.
     void count_triangles(const detail::list_call& what, const slice& counts) {
-        detail::compute_call pass{what.count, "skybark: strip counts", what.push, what.buffers, {}};
+        detail::compute_call pass{what.count, what.name, what.push, what.buffers, {}};
         pass.push.set_header({what.elements.first, what.elements.count, 0, counted_flag(what)});
         pass.buffers[offsets_binding] = counts;
         pass.buffers[length_binding] = what.length;
@@ -691,7 +714,7 @@ class recorder : private detail::stream {
                       const slice& offsets) {
         const bool degenerate = what.policy == padding::degenerate;
         const detail::work_plan p = plan(what.strips, what.strip_triangles, 512, 2);
-        detail::compute_call pass{what.write, "skybark: strips", what.push, what.buffers, {}};
+        detail::compute_call pass{what.write, what.name, what.push, what.buffers, {}};
         pass.buffers[length_binding] = what.length;
         const std::uint32_t flags =
             p.flags | counted_flag(what) | (degenerate ? detail::flag_degenerate : 0);
@@ -723,7 +746,7 @@ class recorder : private detail::stream {
     void write_record(const detail::list_call& what, std::uint64_t fit, const slice& total) {
         const std::uint32_t degenerate =
             total.buffer == VK_NULL_HANDLE ? detail::flag_degenerate : 0;
-        detail::compute_call pass{count_comp, "skybark: count", {}, {}, {}};
+        detail::compute_call pass{count_comp, "count", {}, {}, {}};
         pass.push.set_header({static_cast<std::uint32_t>(std::min<std::uint64_t>(fit, ~0u)),
                               what.elements.count, what.strips * what.strip_triangles,
                               degenerate | counted_flag(what)});
@@ -741,6 +764,7 @@ class recorder : private detail::stream {
                                               const draw_geometry<device>& geometry,
                                               draw_state state) {
         detail::draw_call call;
+        call.name = zone_name<pattern::draw, K>();
         call.program.vertex = program<K>::draw_vert;
         call.program.fragment = program<K>::draw_frag;
         call.program.state = state;
@@ -768,7 +792,7 @@ class recorder : private detail::stream {
         what.program.shape = what.images.shape;
         what.program.color = target.color ? target.color->format() : VK_FORMAT_UNDEFINED;
         what.program.depth = target.depth ? target.depth->format() : VK_FORMAT_UNDEFINED;
-        auto pipeline = state_->pipelines.draw(what.program, "skybark: draw");
+        auto pipeline = state_->pipelines.draw(what.program, what.name);
         if (!pipeline) {
             return stop(pipeline.error());
         }
@@ -805,7 +829,7 @@ class recorder : private detail::stream {
         const std::uint64_t indices = what.indices.size / 4;
         const std::uint64_t most = !indexed ? ~0u : indices > what.first ? indices - what.first : 0;
         const slice arguments = scratch(sizeof(VkDrawIndexedIndirectCommand));
-        detail::compute_call pass{draw_arguments_comp, "skybark: draw arguments", {}, {}, {}};
+        detail::compute_call pass{draw_arguments_comp, "draw arguments", {}, {}, {}};
         pass.push.set_header({what.first + first_index(what), what.base_vertex,
                               static_cast<std::uint32_t>(std::min<std::uint64_t>(most, ~0u)),
                               indexed ? 1u : 0u});
@@ -875,7 +899,7 @@ class recorder : private detail::stream {
         program.shape.draws = program.shape.peels = true;
         program.color = pictures.fragments.format();
         program.depth = pictures.depth.format();
-        auto pipeline = state_->pipelines.draw(program, "skybark: peel");
+        auto pipeline = state_->pipelines.draw(program, what.name);
         auto layout = state_->pipelines.layout(program.shape);
         if (!pipeline || !layout) {
             stop(!pipeline ? pipeline.error() : layout.error());
@@ -929,7 +953,7 @@ class recorder : private detail::stream {
         barrier();
         call().fill_buffer(commands(), what.count.buffer, what.count.offset, sizeof(count_record),
                            0);
-        detail::compute_call pass{peeled_comp, "skybark: peeled", {}, {}, {}};
+        detail::compute_call pass{peeled_comp, "peeled", {}, {}, {}};
         const std::uint32_t pixels = what.width * what.height;
         add(pass.images, sampled_images, fragments.view(), filter_mode::nearest, wrap_mode::clamp);
         pass.push.set_header({what.width, pixels, 0, 0});

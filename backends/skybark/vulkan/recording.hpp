@@ -10,7 +10,8 @@ namespace skybark::vulkan::detail {
 /// Memory for the length of a recording, cut from blocks that stay.
 class arena {
   public:
-    arena(context& c, memory_kind kind) : context_(&c), kind_(kind) {}
+    arena(context& c, memory_kind kind, const char* name)
+        : context_(&c), kind_(kind), name_(name) {}
     arena(const arena&) = delete;
     arena& operator=(const arena&) = delete;
     ~arena() {
@@ -36,7 +37,7 @@ class arena {
         if (!blocks_.empty()) {
             wanted = std::max(wanted, std::min(2 * blocks_.back().memory.size, most));
         }
-        auto memory = make_buffer_memory(*context_, wanted, kind_);
+        auto memory = make_buffer_memory(*context_, wanted, kind_, name_);
         if (!memory) {
             return failure(memory.error());
         }
@@ -72,6 +73,7 @@ class arena {
 
     context* context_;
     memory_kind kind_;
+    const char* name_;
     std::vector<block> blocks_;
 };
 
@@ -125,6 +127,7 @@ class descriptor_sets {
             return done;
         }
         pools_.push_back(pool);
+        c.name_own(VK_OBJECT_TYPE_DESCRIPTOR_POOL, pool, "descriptor pool");
         const std::vector<VkDescriptorSetLayout> layouts(pool_sets, layout_->set);
         auto allocate =
             make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
@@ -138,6 +141,11 @@ class descriptor_sets {
             return done;
         }
         sets_.insert(sets_.end(), made.begin(), made.end());
+        if (c.call.set_object_name) {
+            for (const VkDescriptorSet set : made) {
+                c.name_own(VK_OBJECT_TYPE_DESCRIPTOR_SET, set, "descriptor set");
+            }
+        }
         return {};
     }
 
@@ -188,8 +196,9 @@ class layer_pictures {
 class recording {
   public:
     explicit recording(context& c)
-        : staging(c, memory_kind::upload), readback(c, memory_kind::download),
-          scratch(c, memory_kind::device), layers(c), context_(&c) {}
+        : staging(c, memory_kind::upload, "staging buffer"),
+          readback(c, memory_kind::download, "readback buffer"),
+          scratch(c, memory_kind::device, "scratch buffer"), layers(c), context_(&c) {}
     recording(const recording&) = delete;
     recording& operator=(const recording&) = delete;
     ~recording() {
@@ -266,6 +275,7 @@ class recording {
                 !done) {
                 return done;
             }
+            c.name_own(VK_OBJECT_TYPE_COMMAND_POOL, pool_, "command pool");
         }
         if (fence_ == VK_NULL_HANDLE) {
             const auto fence = make<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
@@ -274,14 +284,19 @@ class recording {
                 !done) {
                 return done;
             }
+            c.name_own(VK_OBJECT_TYPE_FENCE, fence_, "fence");
         }
         auto info =
             make<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
         info.commandPool = pool_;
         info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
         info.commandBufferCount = 1;
-        return c.check(c.call.allocate_command_buffers(c.device(), &info, &own_commands_),
-                       "allocate a command buffer");
+        auto done = c.check(c.call.allocate_command_buffers(c.device(), &info, &own_commands_),
+                            "allocate a command buffer");
+        if (done) {
+            c.name_own(VK_OBJECT_TYPE_COMMAND_BUFFER, own_commands_, "command buffer");
+        }
+        return done;
     }
 
     context* context_;

@@ -55,6 +55,7 @@ inline constexpr std::uint64_t bundle_cells_covered = 25;
 } // namespace detail
 
 inline void recorder::resolve(const ray_bundle& bundle, const bundle_work<device>& work) {
+    const auto here = enter("resolve");
     assert(std::has_single_bit(static_cast<std::uint32_t>(bundle.direction.w)) &&
            bundle.direction.w <= 2048);
     const slice triangles = bound(work.triangles);
@@ -126,16 +127,15 @@ inline void recorder::list_triangles(const ray_bundle& bundle, const detail::bun
     const detail::bundle_parameters parameters{bundle, lists.first, 0,
                                                bundle_turns() / detail::bundle_grids, 0};
     detail::compute_call cover =
-        bundle_pass(bundle_cover_comp, "skybark: bundle, cover", parameters, lists.count);
+        bundle_pass(bundle_cover_comp, "bundle, cover", parameters, lists.count);
     cover.buffers = {lists.triangles, lists.corners, lists.covers, lists.ends, lists.crowded};
     dispatch(cover, groups);
     scan_words(lists.ends, static_cast<std::uint32_t>(lists.ends.size / 4), scratch(4));
-    detail::compute_call levels =
-        bundle_pass(bundle_levels_comp, "skybark: bundle, levels", parameters, 0);
+    detail::compute_call levels = bundle_pass(bundle_levels_comp, "bundle, levels", parameters, 0);
     levels.buffers = {lists.ends, lists.levels};
     dispatch(levels, 1);
     detail::compute_call list =
-        bundle_pass(bundle_list_comp, "skybark: bundle, list", parameters, lists.count);
+        bundle_pass(bundle_list_comp, "bundle, list", parameters, lists.count);
     list.buffers = {lists.corners, lists.covers, lists.ends, lists.listed};
     dispatch(list, groups);
 }
@@ -150,7 +150,7 @@ inline void recorder::look_samples_up(const ray_bundle& bundle, const detail::bu
     const auto pass = [&] {
         detail::compute_call look = bundle_pass(holes ? spirv_words(bundle_look_through_comp)
                                                       : spirv_words(bundle_look_comp),
-                                                "skybark: bundle, look", parameters, count);
+                                                "bundle, look", parameters, count);
         look.buffers = {samples,      lists.corners, lists.ends, lists.listed,
                         lists.levels, hits,          hits,       alpha};
         return look;

@@ -107,6 +107,13 @@ class stream {
         }
     }
 
+    /// The zone and the label of a pattern, to the end of the scope.
+    [[nodiscard]] pattern_scope enter(const char* name) const {
+        return {state_->shared,
+                recording_ && !error_ ? recording_->commands() : VkCommandBuffer{VK_NULL_HANDLE},
+                name};
+    }
+
     [[nodiscard]] const functions& call() const noexcept { return state_->shared.call; }
     [[nodiscard]] VkCommandBuffer commands() const noexcept { return recording_->commands(); }
 
@@ -362,8 +369,7 @@ class stream {
     [[nodiscard]] slice arguments_for(const slice& length, std::uint32_t limit, std::uint32_t side,
                                       std::uint32_t groups) {
         const slice arguments = scratch(sizeof(VkDispatchIndirectCommand));
-        compute_call prepare_arguments{
-            dispatch_arguments_comp, "skybark: dispatch arguments", {}, {}, {}};
+        compute_call prepare_arguments{dispatch_arguments_comp, "dispatch arguments", {}, {}, {}};
         prepare_arguments.push.set_header({0, limit, side, groups});
         prepare_arguments.buffers[vertices_binding] = arguments;
         prepare_arguments.buffers[length_binding] = length;

@@ -73,6 +73,8 @@ inline result<void> device::execute(vulkan::recorder& into) {
         return failure(*into.error_);
     }
     context& c = shared();
+    const hooks& watchers = c.description.hooks;
+    const zone here(watchers, "submit");
     const VkFence fence = into.recording_->fence();
     if (auto done = c.check(c.call.end_command_buffer(into.commands()), "end a command buffer");
         !done) {
@@ -87,6 +89,7 @@ inline result<void> device::execute(vulkan::recorder& into) {
         !done) {
         return done;
     }
+    const zone waiting(watchers, "wait");
     if (auto done = c.check(c.call.wait_for_fences(c.device(), 1, &fence, VK_TRUE, ~0ull),
                             "wait for what was submitted");
         !done) {
@@ -121,6 +124,7 @@ inline result<void> device::wait_idle() {
     if (auto alive = c.alive(); !alive) {
         return alive;
     }
+    const zone here(c.description.hooks, "wait");
     return c.check(c.call.queue_wait_idle(c.description.queue), "wait for the queue");
 }
 
@@ -138,7 +142,8 @@ inline result<buffer> device::create_buffer(std::uint64_t bytes) {
                         device_name() + " has buffers of at most " +
                         std::to_string(c.max_allocation - 16) + " bytes.");
     }
-    auto memory = detail::make_buffer_memory(c, (bytes + 15) / 16 * 16, memory_kind::device);
+    auto memory =
+        detail::make_buffer_memory(c, (bytes + 15) / 16 * 16, memory_kind::device, "buffer");
     if (!memory) {
         return failure(memory.error());
     }
@@ -221,6 +226,7 @@ inline constexpr std::uint64_t staging_piece = 16 << 20;
 
 inline result<void> device::upload(const buffer& to, std::uint64_t offset,
                                    std::span<const std::byte> bytes) {
+    const zone here(shared().description.hooks, "upload");
     assert(offset + bytes.size() <= to.size_bytes());
     if (bytes.empty()) {
         return shared().alive();
@@ -246,6 +252,7 @@ inline result<void> device::upload(const buffer& to, std::uint64_t offset,
 
 inline result<void> device::download(const buffer& from, std::uint64_t offset,
                                      std::span<std::byte> bytes) {
+    const zone here(shared().description.hooks, "download");
     assert(offset + bytes.size() <= from.size_bytes());
     if (bytes.empty()) {
         return shared().alive();
@@ -279,6 +286,7 @@ inline result<void> device::download(const buffer& from, std::uint64_t offset,
 }
 
 inline result<void> device::upload(const image& to, std::span<const std::byte> bytes) {
+    const zone here(shared().description.hooks, "upload");
     const image_description what = to.description();
     const std::size_t row = what.width * bytes_per_pixel(what.format);
     assert(bytes.size() == row * what.height);
@@ -308,6 +316,7 @@ inline result<void> device::upload(const image& to, std::span<const std::byte> b
 }
 
 inline result<void> device::download(const image& from, std::span<std::byte> bytes) {
+    const zone here(shared().description.hooks, "download");
     const image_description what = from.description();
     const std::size_t row = what.width * bytes_per_pixel(what.format);
     assert(bytes.size() == row * what.height);
@@ -383,6 +392,7 @@ template <class Go>
 } // namespace detail
 
 inline result<void> device::upload(const volume& to, std::span<const std::byte> bytes) {
+    const zone here(shared().description.hooks, "upload");
     assert(bytes.size() == to.description().size_bytes());
     return detail::for_pieces(
         to,
@@ -408,6 +418,7 @@ inline result<void> device::upload(const volume& to, std::span<const std::byte> 
 }
 
 inline result<void> device::download(const volume& from, std::span<std::byte> bytes) {
+    const zone here(shared().description.hooks, "download");
     assert(bytes.size() == from.description().size_bytes());
     return detail::for_pieces(from,
                               [&](const detail::volume_piece& piece, std::uint64_t at,

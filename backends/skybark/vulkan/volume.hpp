@@ -96,8 +96,12 @@ class volume {
         info.format = format_of(p.foreign.description.format);
         info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
         p.filterable = c.filters(info.format);
-        return c.check(c.call.create_image_view(c.device(), &info, c.callbacks(), &p.view),
-                       "make a view of a volume");
+        auto done = c.check(c.call.create_image_view(c.device(), &info, c.callbacks(), &p.view),
+                            "make a view of a volume");
+        if (done) {
+            c.name_own(VK_OBJECT_TYPE_IMAGE_VIEW, p.view, "view of a volume");
+        }
+        return done;
     }
 
     /// Whether the device has volumes of this size and format, and room for one.
@@ -167,16 +171,20 @@ class volume {
         if (!done) {
             return done;
         }
+        c.name_own(VK_OBJECT_TYPE_IMAGE, p.foreign.image, "volume");
         VkMemoryRequirements need{};
         c.call.get_image_memory_requirements(c.device(), p.foreign.image, &need);
-        auto memory = detail::allocate(c, need, memory_kind::device);
+        auto memory =
+            detail::allocate(c, need, memory_kind::device, VK_NULL_HANDLE, p.foreign.image);
         if (!memory) {
             return fail(memory.error().code,
                         "Vulkan could not " + sentence + ". " + memory.error().message);
         }
         p.memory = *memory;
-        return c.check(c.call.bind_image_memory(c.device(), p.foreign.image, p.memory.memory, 0),
-                       sentence);
+        c.say_made("volume", need.size);
+        return c.check(
+            c.call.bind_image_memory(c.device(), p.foreign.image, p.memory.memory, p.memory.offset),
+            sentence);
     }
 
     context* context_;
