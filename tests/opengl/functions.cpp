@@ -182,6 +182,17 @@ static_assert(gl::debug_callback_user_param == GL_DEBUG_CALLBACK_USER_PARAM);
 static_assert(gl::debug_severity_high == GL_DEBUG_SEVERITY_HIGH);
 static_assert(gl::debug_severity_medium == GL_DEBUG_SEVERITY_MEDIUM);
 static_assert(gl::debug_severity_low == GL_DEBUG_SEVERITY_LOW);
+static_assert(gl::debug_source_application == GL_DEBUG_SOURCE_APPLICATION);
+static_assert(gl::max_debug_group_stack_depth == GL_MAX_DEBUG_GROUP_STACK_DEPTH);
+static_assert(gl::debug_group_stack_depth == GL_DEBUG_GROUP_STACK_DEPTH);
+static_assert(gl::object_buffer == GL_BUFFER);
+static_assert(gl::object_shader == GL_SHADER);
+static_assert(gl::object_program == GL_PROGRAM);
+static_assert(gl::object_query == GL_QUERY);
+static_assert(gl::object_sampler == GL_SAMPLER);
+static_assert(gl::object_vertex_array == GL_VERTEX_ARRAY);
+static_assert(gl::object_texture == GL_TEXTURE);
+static_assert(gl::object_framebuffer == GL_FRAMEBUFFER);
 
 #define SKYBARK_SAME(name, theirs)                                                                 \
     static_assert(std::is_same_v<decltype(gl::functions::name), decltype(&theirs)>)
@@ -205,6 +216,9 @@ SKYBARK_SAME(disable_i, glDisablei);
 SKYBARK_SAME(finish, glFinish);
 SKYBARK_SAME(memory_barrier, glMemoryBarrier);
 SKYBARK_SAME(debug_message_callback, glDebugMessageCallback);
+SKYBARK_SAME(object_label, glObjectLabel);
+SKYBARK_SAME(push_debug_group, glPushDebugGroup);
+SKYBARK_SAME(pop_debug_group, glPopDebugGroup);
 SKYBARK_SAME(create_buffers, glCreateBuffers);
 SKYBARK_SAME(delete_buffers, glDeleteBuffers);
 SKYBARK_SAME(named_buffer_storage, glNamedBufferStorage);

@@ -7,6 +7,7 @@
 // only what a draw or a dispatch itself needs is ever bound; see state.hpp.
 
 #include <skybark/core/backend.hpp>
+#include <skybark/core/hooks.hpp>
 #include <skybark/opengl/functions.hpp>
 #include <skybark/opengl/programs/own_arguments.hpp>
 
@@ -31,6 +32,10 @@ struct description {
     /// The most that a texture may take which a drawn accumulation draws into. Layers of a volume
     /// that would need more are drawn in several turns.
     std::uint64_t max_target_bytes = std::uint64_t{1} << 30;
+    skybark::hooks hooks = {};
+    /// All that we create gets a name that begins with "skybark" (glObjectLabel), and every pattern
+    /// is a group (glPushDebugGroup), which a debug callback hears of as notifications.
+    bool debug_labels = false;
 };
 
 namespace detail {
@@ -148,7 +153,8 @@ class context {
     /// The worst error since the last call, and whether the context still lives.
     [[nodiscard]] result<void> check(std::string_view doing);
 
-    [[nodiscard]] result<gl::handle> create_buffer(std::uint64_t bytes);
+    /// `what` says what for.
+    [[nodiscard]] result<gl::handle> create_buffer(std::uint64_t bytes, const char* what);
     void destroy_buffer(gl::handle buffer);
     void destroy_texture(gl::handle texture);
 
@@ -164,6 +170,16 @@ class context {
     [[nodiscard]] result<bound_range> write_ranges(std::span<const range> ranges);
     /// Makes a buffer at least so large; its content is undefined afterwards.
     [[nodiscard]] result<void> grow(scratch_buffer& buffer, std::uint64_t bytes);
+
+    /// The name of one of our own objects, where the description asks for names.
+    void label(gl::token kind, gl::handle object, const char* what, std::uint64_t bytes = 0) const;
+    [[nodiscard]] bool labels() const noexcept { return description_.debug_labels; }
+    [[nodiscard]] const hooks& watchers() const noexcept { return description_.hooks; }
+    template <class Text>
+    void say(log_level level, Text&& text) const {
+        log(description_.hooks, level, text);
+    }
+    void say_made(const char* what, std::uint64_t bytes) const;
 
     /// Makes `objects.sums.tiles`, or `layers`, exactly so large.
     [[nodiscard]] result<void> size_tiles(const glm::uvec2& size);
@@ -187,6 +203,8 @@ class context {
     device_traffic traffic;
     shared_objects objects;
     std::string renderer;
+    bool watched = false;           ///< patterns have zones or groups
+    const char* current = "device"; ///< the one that is recorded: programs are named by it
 
   private:
     struct program_entry {
@@ -220,6 +238,7 @@ class context {
 
 inline result<std::unique_ptr<context>> context::create(description given) {
     std::unique_ptr<context> made(new context(std::move(given)));
+    made->watched = made->watchers().has_zones() || made->labels();
     if (auto done = made->load(); !done) {
         return failure(done.error());
     }
@@ -231,10 +250,12 @@ inline result<std::unique_ptr<context>> context::create(description given) {
     if (auto done = made->check("making the objects of a device"); !done) {
         return failure(done.error());
     }
+    made->current = "arguments";
     const shader_stage own[] = {{gl::compute_shader, arguments_comp}};
     if (auto program = made->find_program(own); !program) {
         return failure(program.error());
     }
+    made->say(log_level::info, [&] { return "The opengl device is " + made->renderer + "."; });
     return made;
 }
 
@@ -359,9 +380,25 @@ inline void context::create_objects() {
     storage(objects.scratch, 16);
     storage(objects.arguments, 32);
     storage(objects.parameters, std::uint64_t{parameter_stride_} * parameter_slots);
+    label(gl::object_vertex_array, objects.vertex_array, "vertex array");
+    label(gl::transform_feedback, objects.feedback, "transform feedback");
+    label(gl::object_framebuffer, objects.nothing, "framebuffer of nothing");
+    label(gl::object_framebuffer, objects.target, "framebuffer of draws");
+    label(gl::object_framebuffer, objects.sums.tiles_frame, "framebuffer of tiles");
+    label(gl::object_framebuffer, objects.sums.layers_frame, "framebuffer of layers");
+    label(gl::object_framebuffer, objects.sums.layer_frame, "framebuffer of a layer");
+    label(gl::object_framebuffer, objects.layer.frame, "framebuffer of peels");
+    label(gl::object_texture, objects.resolve.corner_texels, "texels of corners");
+    label(gl::object_texture, objects.resolve.entry_texels, "texels of entries");
+    label(gl::object_query, objects.written, "query of primitives written");
+    label(gl::object_query, objects.generated, "query of primitives generated");
+    label(gl::object_buffer, objects.scratch, "spare buffer");
+    label(gl::object_buffer, objects.arguments, "indirect arguments");
+    label(gl::object_buffer, objects.parameters, "parameters");
     gl.create_samplers(static_cast<int>(objects.samplers.size()), objects.samplers.data());
     for (std::size_t i = 0; i < objects.samplers.size(); ++i) {
         const gl::handle sampler = objects.samplers[i];
+        label(gl::object_sampler, sampler, "sampler");
         const int filter = static_cast<int>((i & 2) != 0 ? gl::linear : gl::nearest);
         const int wrap = static_cast<int>((i & 1) != 0 ? gl::repeat : gl::clamp_to_edge);
         gl.sampler_parameter(sampler, gl::texture_min_filter, filter);
@@ -409,7 +446,27 @@ inline context::~context() {
     gl.delete_vertex_arrays(1, &objects.vertex_array);
 }
 
+inline void context::label(gl::token kind, gl::handle object, const char* what,
+                           std::uint64_t bytes) const {
+    if (labels()) {
+        std::string text = std::string("skybark ") + what;
+        if (bytes != 0) {
+            text += " of " + std::to_string(bytes) + " bytes";
+        }
+        gl.object_label(kind, object, static_cast<int>(text.size()), text.data());
+    }
+}
+
+inline void context::say_made(const char* what, std::uint64_t bytes) const {
+    say(log_level::debug, [&] {
+        return renderer + " has made one " + what + " of " + std::to_string(bytes) + " bytes.";
+    });
+}
+
 inline failure context::lose() {
+    if (!lost_) {
+        say(log_level::error, [this] { return "The OpenGL context of " + renderer + " is lost."; });
+    }
     lost_ = true;
     return fail(error_code::device_lost, "The OpenGL context of " + renderer + " is lost.");
 }
@@ -453,7 +510,7 @@ inline result<void> context::check(std::string_view doing) {
                     std::string(doing) + ".");
 }
 
-inline result<gl::handle> context::create_buffer(std::uint64_t bytes) {
+inline result<gl::handle> context::create_buffer(std::uint64_t bytes, const char* what) {
     // Storage of no bytes is an error in OpenGL; 16 keep the last vec4 of a block readable.
     const std::uint64_t allocated = std::max<std::uint64_t>((bytes + 15) / 16 * 16, 16);
     if (bytes > std::uint64_t{1} << 62) {
@@ -467,8 +524,11 @@ inline result<gl::handle> context::create_buffer(std::uint64_t bytes) {
                             gl::dynamic_storage_bit);
     if (auto done = check("making a buffer of " + std::to_string(bytes) + " bytes"); !done) {
         gl.delete_buffers(1, &buffer);
+        say(log_level::warning, [&] { return done.error().message; });
         return failure(done.error());
     }
+    label(gl::object_buffer, buffer, what, bytes);
+    say_made(what, allocated);
     gl.clear_named_buffer_data(buffer, gl::r32ui, gl::red_integer, gl::unsigned_int, nullptr);
     return buffer;
 }
@@ -502,6 +562,7 @@ inline result<gl::handle> context::compile(const shader_stage& stage,
                            static_cast<int>(stage.text.size() - line)};
     const gl::handle shader = gl.create_shader(stage.type);
     gl.shader_source(shader, 2, texts, lengths);
+    label(gl::object_shader, shader, current);
     gl.compile_shader(shader);
     int good = 0;
     gl.get_shader(shader, gl::compile_status, &good);
@@ -520,6 +581,7 @@ inline result<gl::handle> context::compile(const shader_stage& stage,
 inline result<gl::handle> context::link(std::span<const shader_stage> stages,
                                         std::uint32_t max_vertices) const {
     const gl::handle program = gl.create_program();
+    label(gl::object_program, program, current);
     for (const shader_stage& stage : stages) {
         auto shader = compile(stage, stage.type == gl::geometry_shader ? max_vertices : 0);
         if (!shader) {
@@ -553,10 +615,20 @@ inline result<gl::handle> context::find_program(std::span<const shader_stage> st
             return entry.program;
         }
     }
+    const double begin = watchers().log ? skybark::detail::milliseconds_now() : 0;
     auto program = link(stages, max_vertices);
     if (program) {
         wanted.program = *program;
         programs_.push_back(wanted);
+        say(log_level::debug, [&] {
+            return renderer + " has compiled \"" + current + "\" in " +
+                   skybark::detail::milliseconds_text(skybark::detail::milliseconds_now() - begin) +
+                   ".";
+        });
+    } else {
+        say(log_level::error, [&] {
+            return std::string("No program \"") + current + "\": " + program.error().message;
+        });
     }
     return program;
 }
@@ -584,7 +656,7 @@ inline result<void> context::grow(scratch_buffer& buffer, std::uint64_t bytes) {
         return {};
     }
     const std::uint64_t roomy = std::max<std::uint64_t>(bytes + bytes / 2, 4096);
-    auto name = create_buffer(roomy);
+    auto name = create_buffer(roomy, "buffer to work in");
     if (!name) {
         return failure(name.error());
     }
@@ -610,12 +682,16 @@ inline result<void> context::size_tiles(const glm::uvec2& size) {
     }
     gl.delete_textures(1, &sums.tiles);
     gl.create_textures(gl::texture_2d, 1, &sums.tiles);
+    label(gl::object_texture, sums.tiles, "tiles to accumulate in");
     gl.texture_storage_2d(sums.tiles, 1, gl::rg32f, static_cast<int>(size.x),
                           static_cast<int>(size.y));
     gl.named_framebuffer_texture(sums.tiles_frame, gl::color_attachment0, sums.tiles, 0);
     auto done = check("making tiles of " + std::to_string(size.x) + " x " + std::to_string(size.y) +
                       " pixels to accumulate in");
     sums.tiles_size = done ? size : glm::uvec2(0);
+    if (done) {
+        say_made("texture to accumulate in", std::uint64_t{size.x} * size.y * 8);
+    }
     return done;
 }
 
@@ -626,6 +702,7 @@ inline result<void> context::size_layers(const glm::uvec3& size) {
     }
     gl.delete_textures(1, &sums.layers);
     gl.create_textures(gl::texture_3d, 1, &sums.layers);
+    label(gl::object_texture, sums.layers, "layers to accumulate in");
     gl.texture_storage_3d(sums.layers, 1, gl::rg32f, static_cast<int>(size.x),
                           static_cast<int>(size.y), static_cast<int>(size.z));
     gl.named_framebuffer_texture(sums.layers_frame, gl::color_attachment0, sums.layers, 0);
@@ -633,6 +710,9 @@ inline result<void> context::size_layers(const glm::uvec3& size) {
         check("making layers of " + std::to_string(size.x) + " x " + std::to_string(size.y) +
               " x " + std::to_string(size.z) + " voxels to accumulate in");
     sums.layers_size = done ? size : glm::uvec3(0);
+    if (done) {
+        say_made("texture to accumulate in", std::uint64_t{size.x} * size.y * size.z * 8);
+    }
     return done;
 }
 
@@ -657,6 +737,7 @@ inline result<void> context::size_layer(const glm::uvec2& size) {
     const auto texture = [&](gl::handle& name, gl::token format, gl::token attachment) {
         gl.delete_textures(1, &name);
         gl.create_textures(gl::texture_2d, 1, &name);
+        label(gl::object_texture, name, "layer to peel");
         gl.texture_storage_2d(name, 1, format, static_cast<int>(size.x), static_cast<int>(size.y));
         gl.named_framebuffer_texture(layer.frame, attachment, name, 0);
     };
@@ -665,6 +746,9 @@ inline result<void> context::size_layer(const glm::uvec2& size) {
     auto done = check("making a layer of " + std::to_string(size.x) + " x " +
                       std::to_string(size.y) + " pixels to peel");
     layer.size = done ? size : glm::uvec2(0);
+    if (done) {
+        say_made("pair of textures to peel", std::uint64_t{size.x} * size.y * 12);
+    }
     return done;
 }
 
@@ -680,6 +764,55 @@ inline void context::attach(gl::handle color, gl::handle depth) {
         attached_depth_ = depth;
     }
 }
+
+/// A pattern: a zone of the hooks, and a debug group. Without both, a branch.
+class pattern_scope {
+  public:
+    pattern_scope(context& c, const char* name) {
+        c.current = name;
+        if (c.watched) {
+            begin(c, name);
+        }
+    }
+    pattern_scope(const pattern_scope&) = delete;
+    pattern_scope& operator=(const pattern_scope&) = delete;
+    ~pattern_scope() {
+        if (context_ != nullptr) {
+            end();
+        }
+    }
+
+  private:
+    void begin(context& c, const char* name) {
+        context_ = &c;
+        if (const hooks& h = c.watchers(); h.begin_zone != nullptr) {
+            h.begin_zone(h.user, name);
+        }
+        if (c.labels()) {
+            // A push onto a full stack does nothing, and the pop would take a group of the
+            // caller's.
+            int depth = 0;
+            int most = 0;
+            c.gl.get_integer(gl::debug_group_stack_depth, &depth);
+            c.gl.get_integer(gl::max_debug_group_stack_depth, &most);
+            pushed_ = depth < most;
+        }
+        if (pushed_) {
+            c.gl.push_debug_group(gl::debug_source_application, 0, -1, name);
+        }
+    }
+    void end() {
+        if (pushed_) {
+            context_->gl.pop_debug_group();
+        }
+        if (const hooks& h = context_->watchers(); h.end_zone != nullptr) {
+            h.end_zone(h.user);
+        }
+    }
+
+    context* context_ = nullptr; ///< null: nobody looks
+    bool pushed_ = false;
+};
 
 } // namespace detail
 } // namespace skybark::opengl

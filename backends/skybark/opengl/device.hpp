@@ -52,6 +52,17 @@ class device {
         return {nullptr, name, description};
     }
 
+    /// Names that debuggers show, in place of ours, where the description asks for names.
+    void set_name(const buffer& what, const char* name) const {
+        set_name(gl::object_buffer, what.name(), name);
+    }
+    void set_name(const image& what, const char* name) const {
+        set_name(gl::object_texture, what.name(), name);
+    }
+    void set_name(const volume& what, const char* name) const {
+        set_name(gl::object_texture, what.name(), name);
+    }
+
     [[nodiscard]] result<void> upload(const buffer& to, std::uint64_t offset,
                                       std::span<const std::byte> bytes);
     [[nodiscard]] result<void> download(const buffer& from, std::uint64_t offset,
@@ -66,6 +77,12 @@ class device {
 
   private:
     explicit device(std::unique_ptr<detail::context> context) : context_(std::move(context)) {}
+
+    void set_name(gl::token kind, gl::handle object, const char* name) const {
+        if (context_->labels() && context_->enter()) {
+            context_->gl.object_label(kind, object, -1, name);
+        }
+    }
 
     std::unique_ptr<detail::context> context_;
 };
@@ -122,7 +139,7 @@ inline result<buffer> device::create_buffer(std::uint64_t bytes) {
     if (auto entered = context_->enter(); !entered) {
         return failure(entered.error());
     }
-    auto name = context_->create_buffer(bytes);
+    auto name = context_->create_buffer(bytes, "buffer");
     if (!name) {
         return failure(name.error());
     }
@@ -149,8 +166,11 @@ inline result<image> device::create_image(const image_description& description) 
                                     static_cast<int>(width), static_cast<int>(height));
     image made(context_.get(), name, description);
     if (auto done = context_->check("making " + text); !done) {
+        context_->say(log_level::warning, [&] { return done.error().message; });
         return failure(done.error());
     }
+    context_->label(gl::object_texture, name, "image");
+    context_->say_made("image", detail::bytes_of(description));
     return made;
 }
 
@@ -176,13 +196,17 @@ inline result<volume> device::create_volume(const volume_description& descriptio
                                     static_cast<int>(depth));
     volume made(context_.get(), name, description);
     if (auto done = context_->check("making " + text); !done) {
+        context_->say(log_level::warning, [&] { return done.error().message; });
         return failure(done.error());
     }
+    context_->label(gl::object_texture, name, "volume");
+    context_->say_made("volume", description.size_bytes());
     return made;
 }
 
 inline result<void> device::upload(const buffer& to, std::uint64_t offset,
                                    std::span<const std::byte> bytes) {
+    const zone here(context_->watchers(), "upload");
     assert(offset + bytes.size() <= to.size_bytes() && "an upload beyond the buffer's end");
     if (auto entered = context_->enter(); !entered || bytes.empty()) {
         return entered;
@@ -196,6 +220,7 @@ inline result<void> device::upload(const buffer& to, std::uint64_t offset,
 
 inline result<void> device::download(const buffer& from, std::uint64_t offset,
                                      std::span<std::byte> bytes) {
+    const zone here(context_->watchers(), "download");
     assert(offset + bytes.size() <= from.size_bytes() && "a download beyond the buffer's end");
     if (auto entered = context_->enter(); !entered || bytes.empty()) {
         return entered;
@@ -208,6 +233,7 @@ inline result<void> device::download(const buffer& from, std::uint64_t offset,
 }
 
 inline result<void> device::upload(const image& to, std::span<const std::byte> bytes) {
+    const zone here(context_->watchers(), "upload");
     const image_description what = to.description();
     assert(bytes.size() == detail::bytes_of(what) && "an upload of another size than the image's");
     if (auto entered = context_->enter(); !entered) {
@@ -226,6 +252,7 @@ inline result<void> device::upload(const image& to, std::span<const std::byte> b
 }
 
 inline result<void> device::download(const image& from, std::span<std::byte> bytes) {
+    const zone here(context_->watchers(), "download");
     const image_description what = from.description();
     assert(bytes.size() == detail::bytes_of(what) && "a download of another size than the image's");
     if (auto entered = context_->enter(); !entered) {
@@ -245,6 +272,7 @@ inline result<void> device::download(const image& from, std::span<std::byte> byt
 }
 
 inline result<void> device::upload(const volume& to, std::span<const std::byte> bytes) {
+    const zone here(context_->watchers(), "upload");
     const volume_description what = to.description();
     assert(bytes.size() == what.size_bytes() && "an upload of another size than the volume's");
     if (auto entered = context_->enter(); !entered) {
@@ -263,6 +291,7 @@ inline result<void> device::upload(const volume& to, std::span<const std::byte> 
 }
 
 inline result<void> device::download(const volume& from, std::span<std::byte> bytes) {
+    const zone here(context_->watchers(), "download");
     const volume_description what = from.description();
     assert(bytes.size() == what.size_bytes() && "a download of another size than the volume's");
     if (auto entered = context_->enter(); !entered) {
@@ -302,8 +331,12 @@ inline result<void> device::submit(recorder& recorded) {
     if (auto entered = context_->enter(); !entered) {
         return entered;
     }
+    const zone here(context_->watchers(), "submit");
     context_->detach();
-    context_->gl.finish();
+    {
+        const zone waiting(context_->watchers(), "wait");
+        context_->gl.finish();
+    }
     auto done = context_->check("running what was recorded");
     if (recorded.error_ && (done || done.error().code != error_code::device_lost)) {
         return failure(*recorded.error_);
@@ -318,7 +351,7 @@ inline void recorder::upload(const buffer_view<device>& to, std::span<const std:
     if (bytes.empty()) {
         return;
     }
-    attempt([&]() -> result<void> {
+    attempt("upload", [&]() -> result<void> {
         const detail::bound_range range = detail::bound(to);
         context_->gl.named_buffer_sub_data(range.buffer, range.offset,
                                            static_cast<std::ptrdiff_t>(bytes.size()), bytes.data());
@@ -332,7 +365,7 @@ inline void recorder::copy(const buffer_view<device>& from, const buffer_view<de
     if (from.size == 0) {
         return;
     }
-    attempt([&]() -> result<void> {
+    attempt("copy", [&]() -> result<void> {
         const detail::bound_range source = detail::bound(from);
         const detail::bound_range target = detail::bound(to);
         context_->gl.copy_named_buffer_sub_data(source.buffer, target.buffer, source.offset,
@@ -343,7 +376,7 @@ inline void recorder::copy(const buffer_view<device>& from, const buffer_view<de
 
 template <map_kernel K>
 void recorder::map(const K& kernel, const bindings<device, K>& buffers, range elements) {
-    attempt([&] {
+    attempt(zone_name<pattern::map, K>(), [&] {
         const auto ranges = detail::bound(buffers);
         return detail::map(*context_, program<K>::map_comp, {detail::bytes_of(kernel), ranges},
                            {elements.first, elements.count, {}});
@@ -353,7 +386,7 @@ void recorder::map(const K& kernel, const bindings<device, K>& buffers, range el
 template <map_kernel K>
 void recorder::map(const K& kernel, const bindings<device, K>& buffers,
                    std::span<const range> ranges) {
-    attempt([&] {
+    attempt(zone_name<pattern::map, K>(), [&] {
         const auto bound = detail::bound(buffers);
         return detail::map_levels(*context_, program<K>::map_comp, program<K>::levels_comp,
                                   {detail::bytes_of(kernel), bound}, ranges);
@@ -363,7 +396,7 @@ void recorder::map(const K& kernel, const bindings<device, K>& buffers,
 template <map_kernel K>
 void recorder::map(const K& kernel, const bindings<device, K>& buffers,
                    const counted<device>& elements) {
-    attempt([&] {
+    attempt(zone_name<pattern::map, K>(), [&] {
         const auto ranges = detail::bound(buffers);
         return detail::map(*context_, program<K>::map_comp, {detail::bytes_of(kernel), ranges},
                            {0, elements.limit, detail::bound(elements.count)});
@@ -376,7 +409,7 @@ void recorder::expand_elements(const K& kernel, const bindings<device, K>& buffe
                                const triangle_list<device>& out) {
     static_assert(sizeof(typename K::vertex) <= detail::max_feedback_vertex_bytes,
                   "transform feedback takes at most 64 components a vertex");
-    attempt([&] {
+    attempt(zone_name<pattern::expand, K>(), [&] {
         const auto ranges = detail::bound(buffers);
         detail::expansion expansion;
         expansion.vertex_text = program<K>::expand_vert;
@@ -408,7 +441,7 @@ void recorder::expand_rings(const K& kernel, const bindings<device, K>& buffers,
                             const buffer_view<device>& out) {
     static_assert(sizeof(typename K::vertex) <= detail::max_feedback_vertex_bytes,
                   "transform feedback takes at most 64 components a vertex");
-    attempt([&] {
+    attempt(zone_name<pattern::expand_rings, K>(), [&] {
         const auto ranges = detail::bound(buffers);
         detail::expansion expansion;
         expansion.vertex_text = program<K>::expand_vert;
@@ -432,7 +465,7 @@ void recorder::draw_kernel_call(const K&, const detail::kernel_call& kernel,
                                 const draw_target<device>& target, const draw_state& state) {
     static_assert(K::images <= max_kernel_images, "a kernel reads at most eight images");
     assert((target.color != nullptr || target.depth != nullptr) && "a draw without a target");
-    attempt([&] {
+    attempt(zone_name<pattern::draw, K>(), [&] {
         std::array<detail::image_binding, K::images> textures;
         for (std::size_t i = 0; i < textures.size(); ++i) {
             assert(images[i].image != nullptr && "a kernel given too few images");
@@ -488,7 +521,7 @@ void recorder::peel(const K& kernel, const bindings<device, K>& buffers, range t
     [[maybe_unused]] const std::uint64_t bytes = std::uint64_t{layer.width} * layer.height * 4;
     assert(layer.depth.size >= bytes && layer.triangle.size >= bytes && "too few words for pixels");
     assert(layer.count.size >= sizeof(count_record) && "no room for the count of a layer");
-    attempt([&] {
+    attempt(zone_name<pattern::peel, K>(), [&] {
         const auto ranges = detail::bound(buffers);
         return detail::peel(*context_, {detail::bytes_of(kernel), ranges}, triangles,
                             {program<K>::peel_vert,
@@ -502,7 +535,7 @@ void recorder::peel(const K& kernel, const bindings<device, K>& buffers, range t
 inline void recorder::resolve(const ray_bundle& bundle, const bundle_work<device>& work) {
     assert(work.hits.size / sizeof(gather_hit) >= work.samples.size / sizeof(gather_sample) &&
            "too few hits for samples");
-    attempt([&] {
+    attempt("resolve", [&] {
         return detail::resolve(*context_,
                                {bundle, detail::bound(work.triangles), detail::bound(work.alpha),
                                 detail::bound(work.samples), detail::bound(work.hits)});
@@ -513,14 +546,15 @@ inline void recorder::resolve(const ray_bundle& bundle, const bundle_work<device
 
 inline void recorder::scan(const buffer_view<device>& words, const buffer_view<device>& total) {
     assert(total.size >= 4 && "no room for the sum of all words");
-    attempt(
-        [&] { return detail::scan_words(*context_, detail::bound(words), detail::bound(total)); });
+    attempt("scan", [&] {
+        return detail::scan_words(*context_, detail::bound(words), detail::bound(total));
+    });
 }
 
 inline void recorder::sort_pairs(const buffer_view<device>& keys, const buffer_view<device>& values,
                                  std::uint32_t limit, const buffer_view<device>& length,
                                  std::uint32_t key_bits) {
-    attempt([&] {
+    attempt("sort", [&] {
         const std::uint64_t room = std::min(keys.size, values.size) / 4;
         const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(room, limit));
         return detail::sort_pairs(*context_, detail::bound(keys), detail::bound(values),
@@ -550,7 +584,7 @@ inline void recorder::sort(const buffer_view<device>& keys, const buffer_view<de
 // ---- volumes ------------------------------------------------------------------------------------
 
 inline void recorder::scan(const volume& from, const volume& into, const volume_scan& how) {
-    attempt([&] {
+    attempt("scan volume", [&] {
         return detail::scan_volume(*context_, {from.name(), from.description()},
                                    {into.name(), into.description()}, how);
     });
@@ -561,7 +595,7 @@ void recorder::accumulate_elements(const K& kernel, const bindings<device, K>& b
                                    const detail::element_range& elements,
                                    const accumulation<device>& out) {
     assert(out.into != nullptr && "an accumulation without a volume");
-    attempt([&] {
+    attempt(zone_name<pattern::accumulate, K>(), [&] {
         const auto ranges = detail::bound(buffers);
         detail::slab_call call;
         call.compute_text = program<K>::accumulate_comp;
@@ -595,7 +629,7 @@ void recorder::accumulate(const K& kernel, const bindings<device, K>& buffers,
 template <grid_map_kernel K>
 void recorder::map(const K& kernel, const bindings<device, K>& buffers,
                    const volume_bindings<device, K>& volumes, range elements) {
-    attempt([&] {
+    attempt(zone_name<pattern::map, K>(), [&] {
         const auto ranges = detail::bound(buffers);
         const auto read = detail::names_of(volumes.read);
         const auto write = detail::names_of(volumes.write);
@@ -608,7 +642,7 @@ void recorder::map(const K& kernel, const bindings<device, K>& buffers,
 template <voxel_kernel K>
 void recorder::map_voxels(const K& kernel, const bindings<device, K>& buffers,
                           const volume_bindings<device, K>& volumes, const glm::uvec3& extent) {
-    attempt([&] {
+    attempt(zone_name<pattern::map_voxels, K>(), [&] {
         const auto ranges = detail::bound(buffers);
         const auto read = detail::names_of(volumes.read);
         const auto write = detail::names_of(volumes.write);

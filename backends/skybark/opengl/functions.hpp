@@ -95,7 +95,12 @@ inline constexpr token image_binding_name = 0x8F3A, image_binding_level = 0x8F3B
 inline constexpr token all_barrier_bits = 0xFFFFFFFF;
 inline constexpr token debug_output = 0x92E0, debug_output_synchronous = 0x8242,
     debug_callback_user_param = 0x8245, debug_severity_high = 0x9146, debug_severity_medium = 0x9147,
-    debug_severity_low = 0x9148;
+    debug_severity_low = 0x9148, debug_source_application = 0x824A,
+    max_debug_group_stack_depth = 0x826C, debug_group_stack_depth = 0x826D;
+/// What glObjectLabel calls the kinds of objects; of transform feedbacks as above.
+inline constexpr token object_buffer = 0x82E0, object_shader = 0x82E1, object_program = 0x82E2,
+    object_query = 0x82E3, object_sampler = 0x82E6, object_vertex_array = 0x8074,
+    object_texture = 0x1702, object_framebuffer = 0x8D40;
 // clang-format on
 
 using debug_procedure = void(SKYBARK_OPENGL_CALL*)(token source, token type, handle id,
@@ -127,6 +132,9 @@ using debug_procedure = void(SKYBARK_OPENGL_CALL*)(token source, token type, han
     X(void, finish, "glFinish", ()) \
     X(void, memory_barrier, "glMemoryBarrier", (token)) \
     X(void, debug_message_callback, "glDebugMessageCallback", (debug_procedure, const void*)) \
+    X(void, object_label, "glObjectLabel", (token, handle, int, const char*)) \
+    X(void, push_debug_group, "glPushDebugGroup", (token, handle, int, const char*)) \
+    X(void, pop_debug_group, "glPopDebugGroup", ()) \
     X(void, create_buffers, "glCreateBuffers", (int, handle*)) \
     X(void, delete_buffers, "glDeleteBuffers", (int, const handle*)) \
     X(void, named_buffer_storage, "glNamedBufferStorage", (handle, std::ptrdiff_t, const void*, token)) \

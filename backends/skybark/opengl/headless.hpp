@@ -37,6 +37,9 @@ struct headless_options {
     headless_kind kind = headless_kind::any;
     /// Optional: makes a debug context, and is called for each of its messages. Must not throw.
     std::function<void(const debug_message&)> debug;
+    // As in description.
+    skybark::hooks hooks = {};
+    bool debug_labels = false;
 };
 
 namespace detail {
@@ -379,8 +382,7 @@ class headless {
 
     /// For headers that make contexts in other ways.
     [[nodiscard]] static result<headless>
-    adopt(result<std::shared_ptr<detail::headless_context>> context,
-          std::function<void(const debug_message&)> sink);
+    adopt(result<std::shared_ptr<detail::headless_context>> context, headless_options options);
 
   private:
     headless(std::shared_ptr<detail::headless_context> context, opengl::device device)
@@ -391,14 +393,16 @@ class headless {
 };
 
 inline result<headless> headless::adopt(result<std::shared_ptr<detail::headless_context>> context,
-                                        std::function<void(const debug_message&)> sink) {
+                                        headless_options options) {
     if (!context) {
         return failure(context.error());
     }
-    if (auto started = (*context)->start(std::move(sink)); !started) {
+    if (auto started = (*context)->start(std::move(options.debug)); !started) {
         return failure(started.error());
     }
     description given;
+    given.hooks = options.hooks;
+    given.debug_labels = options.debug_labels;
     given.user = context->get();
     given.owner = *context;
     given.get_proc_address = [](const char* name, void* user) {
@@ -417,13 +421,13 @@ inline result<headless> headless::adopt(result<std::shared_ptr<detail::headless_
 inline result<headless> headless::create(headless_options options) {
     const bool debug = static_cast<bool>(options.debug);
     if (options.kind == headless_kind::osmesa) {
-        return adopt(detail::osmesa_context::create(), std::move(options.debug));
+        return adopt(detail::osmesa_context::create(), std::move(options));
     }
-    auto made = adopt(detail::egl_context::create(debug), options.debug);
+    auto made = adopt(detail::egl_context::create(debug), options);
     if (made || options.kind == headless_kind::egl) {
         return made;
     }
-    auto instead = adopt(detail::osmesa_context::create(), std::move(options.debug));
+    auto instead = adopt(detail::osmesa_context::create(), std::move(options));
     if (!instead) {
         return fail(error_code::unavailable, made.error().message + " " + instead.error().message);
     }

@@ -113,7 +113,7 @@ class glfw_context final : public headless_context {
 /// A context of a hidden window; `kind` of the options is not looked at.
 [[nodiscard]] inline result<headless> create_headless_glfw(headless_options options = {}) {
     const bool debug = static_cast<bool>(options.debug);
-    return headless::adopt(detail::glfw_context::create(debug), std::move(options.debug));
+    return headless::adopt(detail::glfw_context::create(debug), std::move(options));
 }
 
 } // namespace skybark::opengl

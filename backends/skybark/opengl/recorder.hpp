@@ -106,14 +106,15 @@ class recorder {
     friend class device;
     explicit recorder(detail::context& context) noexcept : context_(&context) {}
 
-    /// Runs `work` unless an error came before, and keeps its error.
+    /// Runs the pattern `name` unless an error came before, and keeps its error.
     template <class Work>
-    void attempt(Work&& work) {
+    void attempt(const char* name, Work&& work) {
         if (error_) {
             return;
         }
         auto done = context_->enter();
         if (done) {
+            const detail::pattern_scope here(*context_, name);
             done = work();
         }
         if (!done) {
