@@ -5,9 +5,9 @@
 
 // Linear between four values, x and z in 0…1.
 float bilinear(float v00, float v10, float v01, float v11, float x, float z) {
-    float near = v00 + (v10 - v00) * x;
-    float far = v01 + (v11 - v01) * x;
-    return near + (far - near) * z;
+    float front = v00 + (v10 - v00) * x;
+    float back = v01 + (v11 - v01) * x;
+    return front + (back - front) * z;
 }
 
 // The mean light of octaves, each with `weight` and `part` of the attenuation of the one before.

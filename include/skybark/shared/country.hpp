@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ad0f100a481b4ebf98e9eb0f2aec98df2de6b869b324ad7446c649590089a1ce
+// sha256 f1994980d613cb5f7b48d3aa97beb5920f6d353b7eb73c00d8887b3b4b6d52ce
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -11,8 +11,8 @@ namespace skybark::shared {
 // Fields and woods seen from afar.
 
 // Noise of `size` metres that fades to its mean where it would be smaller than what can be seen.
-inline float country_noise(float x, float z, float size, float layer, float far) {
-    float seen = clamp(2.0f - far / (300.0f * size), 0.0f, 1.0f);
+inline float country_noise(float x, float z, float size, float layer, float distance) {
+    float seen = clamp(2.0f - distance / (300.0f * size), 0.0f, 1.0f);
     if (seen == 0.0f) {
         return 0.5f;
     }
@@ -20,12 +20,12 @@ inline float country_noise(float x, float z, float size, float layer, float far)
     return 0.5f + (noise - 0.5f) * seen;
 }
 
-// Albedo at (x, z), seen from `far` metres.
-inline vec3 country_albedo(float x, float z, float far) {
-    float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
-    float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
-    float fine = country_noise(x, z, 22.0f, 4.0f, far);
-    float grain = country_noise(x, z, 3.5f, 5.0f, far);
+// Albedo at (x, z), seen from `distance` metres.
+inline vec3 country_albedo(float x, float z, float distance) {
+    float wood = country_noise(x, z, 900.0f, 1.0f, distance) * 0.6f + country_noise(x, z, 240.0f, 2.0f, distance) * 0.4f;
+    float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, distance);
+    float fine = country_noise(x, z, 22.0f, 4.0f, distance);
+    float grain = country_noise(x, z, 3.5f, 5.0f, distance);
     float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
     float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
     float shade = 0.5f + 0.5f * fine + 0.5f * grain;

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f63b86c9c69940bf150d0dbb3c82919e2445685b8c032bd92fc8e4e4b0ce7bef
+// sha256 5cda12c8dbdd7971cd1043964debc2816739166967145533c86978901a2b05c4
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -13,9 +13,9 @@ namespace skybark::shared {
 
 // Linear between four values, x and z in 0…1.
 inline float bilinear(float v00, float v10, float v01, float v11, float x, float z) {
-    float near = v00 + (v10 - v00) * x;
-    float far = v01 + (v11 - v01) * x;
-    return near + (far - near) * z;
+    float front = v00 + (v10 - v00) * x;
+    float back = v01 + (v11 - v01) * x;
+    return front + (back - front) * z;
 }
 
 // The mean light of octaves, each with `weight` and `part` of the attenuation of the one before.

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 9fe0db3167ef86bb53877fa56a31d7e65785cc7a6757bddcbcd3565f25317fbb
+// sha256 70664be40f349743ee9df81e11897c82f8a9f36955b73f22f5e8410133ce3f8f
 #pragma once
 
 #include <skybark/kernels/clouded_ground.hpp>
@@ -401,19 +401,19 @@ return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 float cloud_light(float attenuation) {
 return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
-float country_noise(float x, float z, float size, float layer, float far) {
-float seen = clamp(2.0f - far / (300.0f * size), 0.0f, 1.0f);
+float country_noise(float x, float z, float size, float layer, float distance) {
+float seen = clamp(2.0f - distance / (300.0f * size), 0.0f, 1.0f);
 if (seen == 0.0f) {
 return 0.5f;
 }
 float noise = value_noise(x / size, z / size, layer, 2097152u);
 return 0.5f + (noise - 0.5f) * seen;
 }
-vec3 country_albedo(float x, float z, float far) {
-float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
-float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
-float fine = country_noise(x, z, 22.0f, 4.0f, far);
-float grain = country_noise(x, z, 3.5f, 5.0f, far);
+vec3 country_albedo(float x, float z, float distance) {
+float wood = country_noise(x, z, 900.0f, 1.0f, distance) * 0.6f + country_noise(x, z, 240.0f, 2.0f, distance) * 0.4f;
+float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, distance);
+float fine = country_noise(x, z, 22.0f, 4.0f, distance);
+float grain = country_noise(x, z, 3.5f, 5.0f, distance);
 float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
 float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
 float shade = 0.5f + 0.5f * fine + 0.5f * grain;
@@ -484,7 +484,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 14670};
+)glsl", 14710};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -876,19 +876,19 @@ return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 float cloud_light(float attenuation) {
 return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
-float country_noise(float x, float z, float size, float layer, float far) {
-float seen = clamp(2.0f - far / (300.0f * size), 0.0f, 1.0f);
+float country_noise(float x, float z, float size, float layer, float distance) {
+float seen = clamp(2.0f - distance / (300.0f * size), 0.0f, 1.0f);
 if (seen == 0.0f) {
 return 0.5f;
 }
 float noise = value_noise(x / size, z / size, layer, 2097152u);
 return 0.5f + (noise - 0.5f) * seen;
 }
-vec3 country_albedo(float x, float z, float far) {
-float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
-float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
-float fine = country_noise(x, z, 22.0f, 4.0f, far);
-float grain = country_noise(x, z, 3.5f, 5.0f, far);
+vec3 country_albedo(float x, float z, float distance) {
+float wood = country_noise(x, z, 900.0f, 1.0f, distance) * 0.6f + country_noise(x, z, 240.0f, 2.0f, distance) * 0.4f;
+float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, distance);
+float fine = country_noise(x, z, 22.0f, 4.0f, distance);
+float grain = country_noise(x, z, 3.5f, 5.0f, distance);
 float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
 float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
 float shade = 0.5f + 0.5f * fine + 0.5f * grain;
@@ -963,7 +963,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 14683};
+)glsl", 14723};
 };
 
 } // namespace skybark::opengl

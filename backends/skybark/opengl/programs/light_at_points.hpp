@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ab5d8063edff3b7d9cd7c8d1f2eb194a2ef995d6aec594d293e1a8cb25b82c39
+// sha256 28a8676b4cf0431a5d14ef67b9cf0ef97dec5d96b43a3bd191a5bc5d8ebc94b0
 #pragma once
 
 #include <skybark/kernels/light_at_points.hpp>
@@ -10,113 +10,113 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::light_at_points> {
-    static constexpr std::string_view map_comp = R"glsl(#version 450
+    static constexpr std::string_view map_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 64) in;
 #define KERNEL_VOLUMES 2
 struct surface_vertex {
-    vec3 position;
-    float u;
-    vec3 normal;
-    float v;
-    vec4 tangent;
+vec3 position;
+float u;
+vec3 normal;
+float v;
+vec4 tangent;
 };
 struct branch_end {
-    vec3 position;
-    float radius;
-    vec4 orientation;
-    float path;
-    float slope;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+vec4 orientation;
+float path;
+float slope;
+float reserved0;
+float reserved1;
 };
 struct branch_segment {
-    uint start;
-    uint end;
-    uint caps;
-    uint reserved;
+uint start;
+uint end;
+uint caps;
+uint reserved;
 };
 struct segment_pose {
-    vec4 rotation;
-    vec3 base;
-    float reserved0;
-    vec3 shift;
-    float reserved1;
+vec4 rotation;
+vec3 base;
+float reserved0;
+vec3 shift;
+float reserved1;
 };
 struct end_carrier {
-    uint moved_by;
-    uint turned_by;
-    uint and_by;
-    uint reserved;
+uint moved_by;
+uint turned_by;
+uint and_by;
+uint reserved;
 };
 struct leaf {
-    vec3 position;
-    float width;
-    vec4 orientation;
-    float length;
-    uint carrier;
-    uint seed;
-    float fold;
+vec3 position;
+float width;
+vec4 orientation;
+float length;
+uint carrier;
+uint seed;
+float fold;
 };
 struct segment_load {
-    vec3 force;
-    float drag;
+vec3 force;
+float drag;
 };
 struct cloud_particle {
-    vec3 position;
-    float radius;
-    float optical_depth;
-    float albedo;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+float optical_depth;
+float albedo;
+float reserved0;
+float reserved1;
 };
 struct light_grid {
-    vec4 anchor;
-    vec4 row_x;
-    vec4 row_y;
-    vec4 row_z;
-    vec4 voxel;
+vec4 anchor;
+vec4 row_x;
+vec4 row_y;
+vec4 row_z;
+vec4 voxel;
 };
 struct gather_triangle {
-    vec3 a;
-    uint material;
-    vec3 b;
-    uint alpha;
-    vec3 c;
-    uint reserved;
+vec3 a;
+uint material;
+vec3 b;
+uint alpha;
+vec3 c;
+uint reserved;
 };
 struct gather_material {
-    vec3 diffuse;
-    uint two_sided;
-    vec3 emission;
-    float reserved0;
-    vec3 transmission;
-    float reserved1;
+vec3 diffuse;
+uint two_sided;
+vec3 emission;
+float reserved0;
+vec3 transmission;
+float reserved1;
 };
 struct gather_sample {
-    vec3 position;
-    float reserved0;
-    vec3 normal;
-    float reserved1;
+vec3 position;
+float reserved0;
+vec3 normal;
+float reserved1;
 };
 struct gather_hit {
-    float distance;
-    uint surface;
-    float u;
-    float v;
+float distance;
+uint surface;
+float u;
+float v;
 };
 struct ray_bundle {
-    vec4 centre;
-    vec4 right;
-    vec4 up;
-    vec4 direction;
+vec4 centre;
+vec4 right;
+vec4 up;
+vec4 direction;
 };
 struct patch_table {
-    uint front;
-    uint back;
-    uint rows;
-    uint reserved;
+uint front;
+uint back;
+uint rows;
+uint reserved;
 };
 #define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation; float diffuse; uint stride;
 #ifdef SKYBARK_VULKAN
@@ -134,15 +134,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -166,190 +166,190 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-    float within = min(x, 87.0f);
-    float halvings = floor(within * 1.44269504f + 0.5f);
-    float r = halvings * 0.693145752f - within;
-    r = r + halvings * 1.42860677e-6f;
-    float p = 1.0f + r * (1.0f / 7.0f);
-    p = 1.0f + r * (1.0f / 6.0f) * p;
-    p = 1.0f + r * (1.0f / 5.0f) * p;
-    p = 1.0f + r * (1.0f / 4.0f) * p;
-    p = 1.0f + r * (1.0f / 3.0f) * p;
-    p = 1.0f + r * (1.0f / 2.0f) * p;
-    p = 1.0f + r * p;
-    int exponent = 127 - int(halvings);
-    return x < 87.0f ? p * intBitsToFloat(exponent * 8388608) : 0.0f;
+float within = min(x, 87.0f);
+float halvings = floor(within * 1.44269504f + 0.5f);
+float r = halvings * 0.693145752f - within;
+r = r + halvings * 1.42860677e-6f;
+float p = 1.0f + r * (1.0f / 7.0f);
+p = 1.0f + r * (1.0f / 6.0f) * p;
+p = 1.0f + r * (1.0f / 5.0f) * p;
+p = 1.0f + r * (1.0f / 4.0f) * p;
+p = 1.0f + r * (1.0f / 3.0f) * p;
+p = 1.0f + r * (1.0f / 2.0f) * p;
+p = 1.0f + r * p;
+int exponent = 127 - int(halvings);
+return x < 87.0f ? p * intBitsToFloat(exponent * 8388608) : 0.0f;
 }
 float one_minus_exp(float x)
 {
-    float p = 1.0f - x * (1.0f / 9.0f);
-    p = 1.0f - x * (1.0f / 8.0f) * p;
-    p = 1.0f - x * (1.0f / 7.0f) * p;
-    p = 1.0f - x * (1.0f / 6.0f) * p;
-    p = 1.0f - x * (1.0f / 5.0f) * p;
-    p = 1.0f - x * (1.0f / 4.0f) * p;
-    p = 1.0f - x * (1.0f / 3.0f) * p;
-    p = 1.0f - x * (1.0f / 2.0f) * p;
-    return x < 0.5f ? x * p : 1.0f - exp_minus(x);
+float p = 1.0f - x * (1.0f / 9.0f);
+p = 1.0f - x * (1.0f / 8.0f) * p;
+p = 1.0f - x * (1.0f / 7.0f) * p;
+p = 1.0f - x * (1.0f / 6.0f) * p;
+p = 1.0f - x * (1.0f / 5.0f) * p;
+p = 1.0f - x * (1.0f / 4.0f) * p;
+p = 1.0f - x * (1.0f / 3.0f) * p;
+p = 1.0f - x * (1.0f / 2.0f) * p;
+return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
 float log_of_sum(float sum, float less_one)
 {
-    float twos = 0.0f;
-    float less = less_one;
-    if (less_one < -0.25f || less_one > 0.4f) {
-        int bits = floatBitsToInt(max(sum, 1.2e-38f));
-        int power = (bits - 0x3f3504f3) >> 23;
-        less = intBitsToFloat(bits - power * 8388608) - 1.0f;
-        twos = float(power);
-    }
-    float s = less / (2.0f + less);
-    float s2 = s * s;
-    float p = s2 * (1.0f / 11.0f) + 1.0f / 9.0f;
-    p = s2 * p + 1.0f / 7.0f;
-    p = s2 * p + 1.0f / 5.0f;
-    p = s2 * p + 1.0f / 3.0f;
-    p = s2 * p + 1.0f;
-    return 2.0f * s * p + twos * 0.693147181f;
+float twos = 0.0f;
+float less = less_one;
+if (less_one < -0.25f || less_one > 0.4f) {
+int bits = floatBitsToInt(max(sum, 1.2e-38f));
+int power = (bits - 0x3f3504f3) >> 23;
+less = intBitsToFloat(bits - power * 8388608) - 1.0f;
+twos = float(power);
+}
+float s = less / (2.0f + less);
+float s2 = s * s;
+float p = s2 * (1.0f / 11.0f) + 1.0f / 9.0f;
+p = s2 * p + 1.0f / 7.0f;
+p = s2 * p + 1.0f / 5.0f;
+p = s2 * p + 1.0f / 3.0f;
+p = s2 * p + 1.0f;
+return 2.0f * s * p + twos * 0.693147181f;
 }
 float gaussian_above(float u)
 {
-    float x = abs(u) * 0.707106781f;
-    float t = 1.0f / (1.0f + 0.3275911f * x);
-    float p = 1.061405429f * t - 1.453152027f;
-    p = p * t + 1.421413741f;
-    p = p * t - 0.284496736f;
-    p = p * t + 0.254829592f;
-    float tail = 0.5f * (p * t * exp_minus(x * x));
-    return u < 0.0f ? 1.0f - tail : tail;
+float x = abs(u) * 0.707106781f;
+float t = 1.0f / (1.0f + 0.3275911f * x);
+float p = 1.061405429f * t - 1.453152027f;
+p = p * t + 1.421413741f;
+p = p * t - 0.284496736f;
+p = p * t + 0.254829592f;
+float tail = 0.5f * (p * t * exp_minus(x * x));
+return u < 0.0f ? 1.0f - tail : tail;
 }
 vec3 cells_of(light_grid grid, vec3 place)
 {
-    float px = place.x - grid.anchor.x;
-    float py = place.y - grid.anchor.y;
-    float pz = place.z - grid.anchor.z;
-    return vec3(grid.row_x.x * px + grid.row_x.y * py + grid.row_x.z * pz + grid.row_x.w,
-                grid.row_y.x * px + grid.row_y.y * py + grid.row_y.z * pz + grid.row_y.w,
-                grid.row_z.x * px + grid.row_z.y * py + grid.row_z.z * pz + grid.row_z.w);
+float px = place.x - grid.anchor.x;
+float py = place.y - grid.anchor.y;
+float pz = place.z - grid.anchor.z;
+return vec3(grid.row_x.x * px + grid.row_x.y * py + grid.row_x.z * pz + grid.row_x.w,
+grid.row_y.x * px + grid.row_y.y * py + grid.row_y.z * pz + grid.row_y.w,
+grid.row_z.x * px + grid.row_z.y * py + grid.row_z.z * pz + grid.row_z.w);
 }
 vec3 place_of(light_grid grid, vec3 cells)
 {
-    float x = (cells.x - grid.row_x.w) * grid.voxel.x * grid.voxel.x;
-    float y = (cells.y - grid.row_y.w) * grid.voxel.y * grid.voxel.y;
-    float z = (cells.z - grid.row_z.w) * grid.voxel.z * grid.voxel.z;
-    return vec3(
-        grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
-        grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
-        grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
+float x = (cells.x - grid.row_x.w) * grid.voxel.x * grid.voxel.x;
+float y = (cells.y - grid.row_y.w) * grid.voxel.y * grid.voxel.y;
+float z = (cells.z - grid.row_z.w) * grid.voxel.z * grid.voxel.z;
+return vec3(
+grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
+grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
+grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
-    float r2 = p.radius * p.radius;
-    if (d2 >= r2) {
-        return 0.0f;
-    }
-    float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    float on = p.albedo * forward * tau;
-    if (light == 2u && on > 0.0f) {
-        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
-    }
-    return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+float r2 = p.radius * p.radius;
+if (d2 >= r2) {
+return 0.0f;
+}
+float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float on = p.albedo * forward * tau;
+if (light == 2u && on > 0.0f) {
+return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
+}
+return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
 int top_row(float y, float radius)
 {
-    return int(ceil(y + radius - 0.5f)) - 1;
+return int(ceil(y + radius - 0.5f)) - 1;
 }
 int bottom_row(float y, float radius)
 {
-    return int(floor(y - radius - 0.5f));
+return int(floor(y - radius - 0.5f));
 }
 float part_above(uint profile, int row, float y, float radius, float sigmas)
 {
-    if (row > top_row(y, radius)) {
-        return 0.0f;
-    }
-    if (profile == 0u || row <= bottom_row(y, radius)) {
-        return 1.0f;
-    }
-    return gaussian_above((float(row) + 0.5f - y) / radius * sigmas);
+if (row > top_row(y, radius)) {
+return 0.0f;
+}
+if (profile == 0u || row <= bottom_row(y, radius)) {
+return 1.0f;
+}
+return gaussian_above((float(row) + 0.5f - y) / radius * sigmas);
 }
 int quanta(float amount)
 {
-    return int(floor(amount + 0.5f));
+return int(floor(amount + 0.5f));
 }
 vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
-    vec3 cells = cells_of(grid, place);
-    return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
+vec3 cells = cells_of(grid, place);
+return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
+return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float bilinear(float v00, float v10, float v01, float v11, float x, float z) {
-    float near = v00 + (v10 - v00) * x;
-    float far = v01 + (v11 - v01) * x;
-    return near + (far - near) * z;
+float front = v00 + (v10 - v00) * x;
+float back = v01 + (v11 - v01) * x;
+return front + (back - front) * z;
 }
 float octaves_light(float attenuation, uint octaves, float weight, float part) {
-    float sum = 0.0f;
-    float weights = 0.0f;
-    float w = 1.0f;
-    float depth = attenuation;
-    for (uint i = 0u; i < octaves; i = i + 1u) {
-        sum = sum + w * cloud_light(depth);
-        weights = weights + w;
-        w = w * weight;
-        depth = depth * part;
-    }
-    return sum / weights;
+float sum = 0.0f;
+float weights = 0.0f;
+float w = 1.0f;
+float depth = attenuation;
+for (uint i = 0u; i < octaves; i = i + 1u) {
+sum = sum + w * cloud_light(depth);
+weights = weights + w;
+w = w * weight;
+depth = depth * part;
+}
+return sum / weights;
 }
 layout(std430, binding = 0) readonly buffer places_buffer { vec4 places[]; };
 layout(std430, binding = 1) writeonly buffer found_buffer { vec4 found[]; };
 ivec3 size_of(int n) {
-    return n == 0 ? textureSize(kernel_volumes[0], 0) : textureSize(kernel_volumes[1], 0);
+return n == 0 ? textureSize(kernel_volumes[0], 0) : textureSize(kernel_volumes[1], 0);
 }
 float voxel_at(int n, ivec3 at) {
-    ivec3 inside = clamp(at, ivec3(0), size_of(n) - ivec3(1));
-    return n == 0 ? texelFetch(kernel_volumes[0], inside, 0).x
-                  : texelFetch(kernel_volumes[1], inside, 0).x;
+ivec3 inside = clamp(at, ivec3(0), size_of(n) - ivec3(1));
+return n == 0 ? texelFetch(kernel_volumes[0], inside, 0).x
+: texelFetch(kernel_volumes[1], inside, 0).x;
 }
 float value_at(int n, vec3 cells, vec3 ends) {
-    if (!(cells.x >= 0.0 && cells.x <= ends.x && cells.z >= 0.0 && cells.z <= ends.z &&
-          cells.y <= ends.y)) {
-        return 0.0;
-    }
-    vec3 from = vec3(cells.x - 0.5, max(cells.y - 0.5, 0.0), cells.z - 0.5);
-    vec3 first = floor(from);
-    vec3 part = from - first;
-    ivec3 at = ivec3(first);
-    float low = bilinear(voxel_at(n, at), voxel_at(n, at + ivec3(1, 0, 0)),
-                         voxel_at(n, at + ivec3(0, 0, 1)), voxel_at(n, at + ivec3(1, 0, 1)),
-                         part.x, part.z);
-    float high = bilinear(voxel_at(n, at + ivec3(0, 1, 0)), voxel_at(n, at + ivec3(1, 1, 0)),
-                          voxel_at(n, at + ivec3(0, 1, 1)), voxel_at(n, at + ivec3(1, 1, 1)),
-                          part.x, part.z);
-    return low + (high - low) * part.y;
+if (!(cells.x >= 0.0 && cells.x <= ends.x && cells.z >= 0.0 && cells.z <= ends.z &&
+cells.y <= ends.y)) {
+return 0.0;
+}
+vec3 from = vec3(cells.x - 0.5, max(cells.y - 0.5, 0.0), cells.z - 0.5);
+vec3 first = floor(from);
+vec3 part = from - first;
+ivec3 at = ivec3(first);
+float low = bilinear(voxel_at(n, at), voxel_at(n, at + ivec3(1, 0, 0)),
+voxel_at(n, at + ivec3(0, 0, 1)), voxel_at(n, at + ivec3(1, 0, 1)),
+part.x, part.z);
+float high = bilinear(voxel_at(n, at + ivec3(0, 1, 0)), voxel_at(n, at + ivec3(1, 1, 0)),
+voxel_at(n, at + ivec3(0, 1, 1)), voxel_at(n, at + ivec3(1, 1, 1)),
+part.x, part.z);
+return low + (high - low) * part.y;
 }
 void kernel_map(uint i) {
-    vec3 cells = cells_of(grid, places[i * stride].xyz);
-    vec3 size = vec3(size_of(0));
-    float attenuation = value_at(0, cells, size);
-    float light = octaves_light(attenuation, octaves, octave_weight, octave_attenuation);
-    float scattered = diffuse > 0.0 ? value_at(1, cells * diffuse, size * diffuse) : 0.0;
-    found[i] = vec4(attenuation, light + scattered, scattered, 0.0);
+vec3 cells = cells_of(grid, places[i * stride].xyz);
+vec3 size = vec3(size_of(0));
+float attenuation = value_at(0, cells, size);
+float light = octaves_light(attenuation, octaves, octave_weight, octave_attenuation);
+float scattered = diffuse > 0.0 ? value_at(1, cells * diffuse, size * diffuse) : 0.0;
+found[i] = vec4(attenuation, light + scattered, scattered, 0.0);
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
-    return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
-                                         : skybark_header.y;
+return (skybark_header.w & 1u) != 0u ? min(skybark_header.y, skybark_length[0])
+: skybark_header.y;
 }
 void main() {
-    uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
-             gl_LocalInvocationID.x;
-    if (i < skybark_elements()) {
-        kernel_map(skybark_header.x + i);
-    }
+uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
+gl_LocalInvocationID.x;
+if (i < skybark_elements()) {
+kernel_map(skybark_header.x + i);
 }
-)glsl";
-    static constexpr std::string_view levels_comp = R"glsl(#version 450
+}
+)glsl", 9362};
+    static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
 #define writeonly coherent writeonly
@@ -357,107 +357,107 @@ void main() {
 layout(local_size_x = 256) in;
 #define KERNEL_VOLUMES 2
 struct surface_vertex {
-    vec3 position;
-    float u;
-    vec3 normal;
-    float v;
-    vec4 tangent;
+vec3 position;
+float u;
+vec3 normal;
+float v;
+vec4 tangent;
 };
 struct branch_end {
-    vec3 position;
-    float radius;
-    vec4 orientation;
-    float path;
-    float slope;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+vec4 orientation;
+float path;
+float slope;
+float reserved0;
+float reserved1;
 };
 struct branch_segment {
-    uint start;
-    uint end;
-    uint caps;
-    uint reserved;
+uint start;
+uint end;
+uint caps;
+uint reserved;
 };
 struct segment_pose {
-    vec4 rotation;
-    vec3 base;
-    float reserved0;
-    vec3 shift;
-    float reserved1;
+vec4 rotation;
+vec3 base;
+float reserved0;
+vec3 shift;
+float reserved1;
 };
 struct end_carrier {
-    uint moved_by;
-    uint turned_by;
-    uint and_by;
-    uint reserved;
+uint moved_by;
+uint turned_by;
+uint and_by;
+uint reserved;
 };
 struct leaf {
-    vec3 position;
-    float width;
-    vec4 orientation;
-    float length;
-    uint carrier;
-    uint seed;
-    float fold;
+vec3 position;
+float width;
+vec4 orientation;
+float length;
+uint carrier;
+uint seed;
+float fold;
 };
 struct segment_load {
-    vec3 force;
-    float drag;
+vec3 force;
+float drag;
 };
 struct cloud_particle {
-    vec3 position;
-    float radius;
-    float optical_depth;
-    float albedo;
-    float reserved0;
-    float reserved1;
+vec3 position;
+float radius;
+float optical_depth;
+float albedo;
+float reserved0;
+float reserved1;
 };
 struct light_grid {
-    vec4 anchor;
-    vec4 row_x;
-    vec4 row_y;
-    vec4 row_z;
-    vec4 voxel;
+vec4 anchor;
+vec4 row_x;
+vec4 row_y;
+vec4 row_z;
+vec4 voxel;
 };
 struct gather_triangle {
-    vec3 a;
-    uint material;
-    vec3 b;
-    uint alpha;
-    vec3 c;
-    uint reserved;
+vec3 a;
+uint material;
+vec3 b;
+uint alpha;
+vec3 c;
+uint reserved;
 };
 struct gather_material {
-    vec3 diffuse;
-    uint two_sided;
-    vec3 emission;
-    float reserved0;
-    vec3 transmission;
-    float reserved1;
+vec3 diffuse;
+uint two_sided;
+vec3 emission;
+float reserved0;
+vec3 transmission;
+float reserved1;
 };
 struct gather_sample {
-    vec3 position;
-    float reserved0;
-    vec3 normal;
-    float reserved1;
+vec3 position;
+float reserved0;
+vec3 normal;
+float reserved1;
 };
 struct gather_hit {
-    float distance;
-    uint surface;
-    float u;
-    float v;
+float distance;
+uint surface;
+float u;
+float v;
 };
 struct ray_bundle {
-    vec4 centre;
-    vec4 right;
-    vec4 up;
-    vec4 direction;
+vec4 centre;
+vec4 right;
+vec4 up;
+vec4 direction;
 };
 struct patch_table {
-    uint front;
-    uint back;
-    uint rows;
-    uint reserved;
+uint front;
+uint back;
+uint rows;
+uint reserved;
 };
 #define KERNEL_PARAMETERS light_grid grid; uint octaves; float octave_weight; float octave_attenuation; float diffuse; uint stride;
 #ifdef SKYBARK_VULKAN
@@ -475,15 +475,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -507,188 +507,188 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-    float within = min(x, 87.0f);
-    float halvings = floor(within * 1.44269504f + 0.5f);
-    float r = halvings * 0.693145752f - within;
-    r = r + halvings * 1.42860677e-6f;
-    float p = 1.0f + r * (1.0f / 7.0f);
-    p = 1.0f + r * (1.0f / 6.0f) * p;
-    p = 1.0f + r * (1.0f / 5.0f) * p;
-    p = 1.0f + r * (1.0f / 4.0f) * p;
-    p = 1.0f + r * (1.0f / 3.0f) * p;
-    p = 1.0f + r * (1.0f / 2.0f) * p;
-    p = 1.0f + r * p;
-    int exponent = 127 - int(halvings);
-    return x < 87.0f ? p * intBitsToFloat(exponent * 8388608) : 0.0f;
+float within = min(x, 87.0f);
+float halvings = floor(within * 1.44269504f + 0.5f);
+float r = halvings * 0.693145752f - within;
+r = r + halvings * 1.42860677e-6f;
+float p = 1.0f + r * (1.0f / 7.0f);
+p = 1.0f + r * (1.0f / 6.0f) * p;
+p = 1.0f + r * (1.0f / 5.0f) * p;
+p = 1.0f + r * (1.0f / 4.0f) * p;
+p = 1.0f + r * (1.0f / 3.0f) * p;
+p = 1.0f + r * (1.0f / 2.0f) * p;
+p = 1.0f + r * p;
+int exponent = 127 - int(halvings);
+return x < 87.0f ? p * intBitsToFloat(exponent * 8388608) : 0.0f;
 }
 float one_minus_exp(float x)
 {
-    float p = 1.0f - x * (1.0f / 9.0f);
-    p = 1.0f - x * (1.0f / 8.0f) * p;
-    p = 1.0f - x * (1.0f / 7.0f) * p;
-    p = 1.0f - x * (1.0f / 6.0f) * p;
-    p = 1.0f - x * (1.0f / 5.0f) * p;
-    p = 1.0f - x * (1.0f / 4.0f) * p;
-    p = 1.0f - x * (1.0f / 3.0f) * p;
-    p = 1.0f - x * (1.0f / 2.0f) * p;
-    return x < 0.5f ? x * p : 1.0f - exp_minus(x);
+float p = 1.0f - x * (1.0f / 9.0f);
+p = 1.0f - x * (1.0f / 8.0f) * p;
+p = 1.0f - x * (1.0f / 7.0f) * p;
+p = 1.0f - x * (1.0f / 6.0f) * p;
+p = 1.0f - x * (1.0f / 5.0f) * p;
+p = 1.0f - x * (1.0f / 4.0f) * p;
+p = 1.0f - x * (1.0f / 3.0f) * p;
+p = 1.0f - x * (1.0f / 2.0f) * p;
+return x < 0.5f ? x * p : 1.0f - exp_minus(x);
 }
 float log_of_sum(float sum, float less_one)
 {
-    float twos = 0.0f;
-    float less = less_one;
-    if (less_one < -0.25f || less_one > 0.4f) {
-        int bits = floatBitsToInt(max(sum, 1.2e-38f));
-        int power = (bits - 0x3f3504f3) >> 23;
-        less = intBitsToFloat(bits - power * 8388608) - 1.0f;
-        twos = float(power);
-    }
-    float s = less / (2.0f + less);
-    float s2 = s * s;
-    float p = s2 * (1.0f / 11.0f) + 1.0f / 9.0f;
-    p = s2 * p + 1.0f / 7.0f;
-    p = s2 * p + 1.0f / 5.0f;
-    p = s2 * p + 1.0f / 3.0f;
-    p = s2 * p + 1.0f;
-    return 2.0f * s * p + twos * 0.693147181f;
+float twos = 0.0f;
+float less = less_one;
+if (less_one < -0.25f || less_one > 0.4f) {
+int bits = floatBitsToInt(max(sum, 1.2e-38f));
+int power = (bits - 0x3f3504f3) >> 23;
+less = intBitsToFloat(bits - power * 8388608) - 1.0f;
+twos = float(power);
+}
+float s = less / (2.0f + less);
+float s2 = s * s;
+float p = s2 * (1.0f / 11.0f) + 1.0f / 9.0f;
+p = s2 * p + 1.0f / 7.0f;
+p = s2 * p + 1.0f / 5.0f;
+p = s2 * p + 1.0f / 3.0f;
+p = s2 * p + 1.0f;
+return 2.0f * s * p + twos * 0.693147181f;
 }
 float gaussian_above(float u)
 {
-    float x = abs(u) * 0.707106781f;
-    float t = 1.0f / (1.0f + 0.3275911f * x);
-    float p = 1.061405429f * t - 1.453152027f;
-    p = p * t + 1.421413741f;
-    p = p * t - 0.284496736f;
-    p = p * t + 0.254829592f;
-    float tail = 0.5f * (p * t * exp_minus(x * x));
-    return u < 0.0f ? 1.0f - tail : tail;
+float x = abs(u) * 0.707106781f;
+float t = 1.0f / (1.0f + 0.3275911f * x);
+float p = 1.061405429f * t - 1.453152027f;
+p = p * t + 1.421413741f;
+p = p * t - 0.284496736f;
+p = p * t + 0.254829592f;
+float tail = 0.5f * (p * t * exp_minus(x * x));
+return u < 0.0f ? 1.0f - tail : tail;
 }
 vec3 cells_of(light_grid grid, vec3 place)
 {
-    float px = place.x - grid.anchor.x;
-    float py = place.y - grid.anchor.y;
-    float pz = place.z - grid.anchor.z;
-    return vec3(grid.row_x.x * px + grid.row_x.y * py + grid.row_x.z * pz + grid.row_x.w,
-                grid.row_y.x * px + grid.row_y.y * py + grid.row_y.z * pz + grid.row_y.w,
-                grid.row_z.x * px + grid.row_z.y * py + grid.row_z.z * pz + grid.row_z.w);
+float px = place.x - grid.anchor.x;
+float py = place.y - grid.anchor.y;
+float pz = place.z - grid.anchor.z;
+return vec3(grid.row_x.x * px + grid.row_x.y * py + grid.row_x.z * pz + grid.row_x.w,
+grid.row_y.x * px + grid.row_y.y * py + grid.row_y.z * pz + grid.row_y.w,
+grid.row_z.x * px + grid.row_z.y * py + grid.row_z.z * pz + grid.row_z.w);
 }
 vec3 place_of(light_grid grid, vec3 cells)
 {
-    float x = (cells.x - grid.row_x.w) * grid.voxel.x * grid.voxel.x;
-    float y = (cells.y - grid.row_y.w) * grid.voxel.y * grid.voxel.y;
-    float z = (cells.z - grid.row_z.w) * grid.voxel.z * grid.voxel.z;
-    return vec3(
-        grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
-        grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
-        grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
+float x = (cells.x - grid.row_x.w) * grid.voxel.x * grid.voxel.x;
+float y = (cells.y - grid.row_y.w) * grid.voxel.y * grid.voxel.y;
+float z = (cells.z - grid.row_z.w) * grid.voxel.z * grid.voxel.z;
+return vec3(
+grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
+grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
+grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
-    float r2 = p.radius * p.radius;
-    if (d2 >= r2) {
-        return 0.0f;
-    }
-    float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    float on = p.albedo * forward * tau;
-    if (light == 2u && on > 0.0f) {
-        return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
-    }
-    return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+float r2 = p.radius * p.radius;
+if (d2 >= r2) {
+return 0.0f;
+}
+float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float on = p.albedo * forward * tau;
+if (light == 2u && on > 0.0f) {
+return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
+}
+return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
 }
 int top_row(float y, float radius)
 {
-    return int(ceil(y + radius - 0.5f)) - 1;
+return int(ceil(y + radius - 0.5f)) - 1;
 }
 int bottom_row(float y, float radius)
 {
-    return int(floor(y - radius - 0.5f));
+return int(floor(y - radius - 0.5f));
 }
 float part_above(uint profile, int row, float y, float radius, float sigmas)
 {
-    if (row > top_row(y, radius)) {
-        return 0.0f;
-    }
-    if (profile == 0u || row <= bottom_row(y, radius)) {
-        return 1.0f;
-    }
-    return gaussian_above((float(row) + 0.5f - y) / radius * sigmas);
+if (row > top_row(y, radius)) {
+return 0.0f;
+}
+if (profile == 0u || row <= bottom_row(y, radius)) {
+return 1.0f;
+}
+return gaussian_above((float(row) + 0.5f - y) / radius * sigmas);
 }
 int quanta(float amount)
 {
-    return int(floor(amount + 0.5f));
+return int(floor(amount + 0.5f));
 }
 vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
-    vec3 cells = cells_of(grid, place);
-    return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
+vec3 cells = cells_of(grid, place);
+return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 float cloud_light(float attenuation) {
-    return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
+return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
 float bilinear(float v00, float v10, float v01, float v11, float x, float z) {
-    float near = v00 + (v10 - v00) * x;
-    float far = v01 + (v11 - v01) * x;
-    return near + (far - near) * z;
+float front = v00 + (v10 - v00) * x;
+float back = v01 + (v11 - v01) * x;
+return front + (back - front) * z;
 }
 float octaves_light(float attenuation, uint octaves, float weight, float part) {
-    float sum = 0.0f;
-    float weights = 0.0f;
-    float w = 1.0f;
-    float depth = attenuation;
-    for (uint i = 0u; i < octaves; i = i + 1u) {
-        sum = sum + w * cloud_light(depth);
-        weights = weights + w;
-        w = w * weight;
-        depth = depth * part;
-    }
-    return sum / weights;
+float sum = 0.0f;
+float weights = 0.0f;
+float w = 1.0f;
+float depth = attenuation;
+for (uint i = 0u; i < octaves; i = i + 1u) {
+sum = sum + w * cloud_light(depth);
+weights = weights + w;
+w = w * weight;
+depth = depth * part;
+}
+return sum / weights;
 }
 layout(std430, binding = 0) readonly buffer places_buffer { vec4 places[]; };
 layout(std430, binding = 1) writeonly buffer found_buffer { vec4 found[]; };
 ivec3 size_of(int n) {
-    return n == 0 ? textureSize(kernel_volumes[0], 0) : textureSize(kernel_volumes[1], 0);
+return n == 0 ? textureSize(kernel_volumes[0], 0) : textureSize(kernel_volumes[1], 0);
 }
 float voxel_at(int n, ivec3 at) {
-    ivec3 inside = clamp(at, ivec3(0), size_of(n) - ivec3(1));
-    return n == 0 ? texelFetch(kernel_volumes[0], inside, 0).x
-                  : texelFetch(kernel_volumes[1], inside, 0).x;
+ivec3 inside = clamp(at, ivec3(0), size_of(n) - ivec3(1));
+return n == 0 ? texelFetch(kernel_volumes[0], inside, 0).x
+: texelFetch(kernel_volumes[1], inside, 0).x;
 }
 float value_at(int n, vec3 cells, vec3 ends) {
-    if (!(cells.x >= 0.0 && cells.x <= ends.x && cells.z >= 0.0 && cells.z <= ends.z &&
-          cells.y <= ends.y)) {
-        return 0.0;
-    }
-    vec3 from = vec3(cells.x - 0.5, max(cells.y - 0.5, 0.0), cells.z - 0.5);
-    vec3 first = floor(from);
-    vec3 part = from - first;
-    ivec3 at = ivec3(first);
-    float low = bilinear(voxel_at(n, at), voxel_at(n, at + ivec3(1, 0, 0)),
-                         voxel_at(n, at + ivec3(0, 0, 1)), voxel_at(n, at + ivec3(1, 0, 1)),
-                         part.x, part.z);
-    float high = bilinear(voxel_at(n, at + ivec3(0, 1, 0)), voxel_at(n, at + ivec3(1, 1, 0)),
-                          voxel_at(n, at + ivec3(0, 1, 1)), voxel_at(n, at + ivec3(1, 1, 1)),
-                          part.x, part.z);
-    return low + (high - low) * part.y;
+if (!(cells.x >= 0.0 && cells.x <= ends.x && cells.z >= 0.0 && cells.z <= ends.z &&
+cells.y <= ends.y)) {
+return 0.0;
+}
+vec3 from = vec3(cells.x - 0.5, max(cells.y - 0.5, 0.0), cells.z - 0.5);
+vec3 first = floor(from);
+vec3 part = from - first;
+ivec3 at = ivec3(first);
+float low = bilinear(voxel_at(n, at), voxel_at(n, at + ivec3(1, 0, 0)),
+voxel_at(n, at + ivec3(0, 0, 1)), voxel_at(n, at + ivec3(1, 0, 1)),
+part.x, part.z);
+float high = bilinear(voxel_at(n, at + ivec3(0, 1, 0)), voxel_at(n, at + ivec3(1, 1, 0)),
+voxel_at(n, at + ivec3(0, 1, 1)), voxel_at(n, at + ivec3(1, 1, 1)),
+part.x, part.z);
+return low + (high - low) * part.y;
 }
 void kernel_map(uint i) {
-    vec3 cells = cells_of(grid, places[i * stride].xyz);
-    vec3 size = vec3(size_of(0));
-    float attenuation = value_at(0, cells, size);
-    float light = octaves_light(attenuation, octaves, octave_weight, octave_attenuation);
-    float scattered = diffuse > 0.0 ? value_at(1, cells * diffuse, size * diffuse) : 0.0;
-    found[i] = vec4(attenuation, light + scattered, scattered, 0.0);
+vec3 cells = cells_of(grid, places[i * stride].xyz);
+vec3 size = vec3(size_of(0));
+float attenuation = value_at(0, cells, size);
+float light = octaves_light(attenuation, octaves, octave_weight, octave_attenuation);
+float scattered = diffuse > 0.0 ? value_at(1, cells * diffuse, size * diffuse) : 0.0;
+found[i] = vec4(attenuation, light + scattered, scattered, 0.0);
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
 void main() {
-    for (uint r = 0u; r < skybark_header.y; ++r) {
-        uvec2 elements = skybark_ranges[skybark_header.x + r];
-        for (uint i = gl_LocalInvocationID.x; i < elements.y; i += 256u) {
-            kernel_map(elements.x + i);
-        }
-        memoryBarrierBuffer();
-        barrier();
-    }
+for (uint r = 0u; r < skybark_header.y; ++r) {
+uvec2 elements = skybark_ranges[skybark_header.x + r];
+for (uint i = gl_LocalInvocationID.x; i < elements.y; i += 256u) {
+kernel_map(elements.x + i);
 }
-)glsl";
+memoryBarrierBuffer();
+barrier();
+}
+}
+)glsl", 9377};
 };
 
 } // namespace skybark::opengl

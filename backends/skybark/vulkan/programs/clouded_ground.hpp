@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ff504fb96808b928ba0c9a8d9e654036ebf43f1ad398c48bee1d4155f0c13d54
+// sha256 738aff6037ed9ea0caa819404a4b83a2bf12c8dad2b89dd41723b2a492dec504
 #pragma once
 
 #include <skybark/kernels/clouded_ground.hpp>
