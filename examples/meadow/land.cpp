@@ -178,4 +178,22 @@ void land::add_light_triangles(std::vector<gather_triangle>& to, std::uint32_t m
     }
 }
 
+float land::light_height(float x, float z) const {
+    const float step = side / static_cast<float>(light_cells);
+    const glm::vec2 at = glm::vec2(x + side / 2, z + side / 2) / step;
+    const glm::vec2 cell = glm::clamp(glm::floor(at), 0.0f, static_cast<float>(light_cells - 1));
+    const glm::vec2 part = at - cell;
+    const auto corner = [&](float column, float row) {
+        return height(step * (cell.x + column) - side / 2, step * (cell.y + row) - side / 2);
+    };
+    const float low = corner(0, 0);
+    const float high = corner(1, 1);
+    if (part.y >= part.x) {
+        const float south = corner(0, 1);
+        return low + (south - low) * part.y + (high - south) * part.x;
+    }
+    const float east = corner(1, 0);
+    return low + (east - low) * part.x + (high - east) * part.y;
+}
+
 } // namespace skybark::meadow

@@ -46,6 +46,8 @@ class land {
 
     /// Appends the inner land as light meets it: 2 · light_cells² triangles of this material.
     void add_light_triangles(std::vector<gather_triangle>& to, std::uint32_t material) const;
+    /// The height of these triangles at a place inside the square.
+    [[nodiscard]] float light_height(float x, float z) const;
 
   private:
     struct swell {

@@ -173,6 +173,7 @@ class light {
         std::vector<gather_material> materials(stand.materials.begin(), stand.materials.end());
         stand_count_ = static_cast<std::uint32_t>(triangles.size());
         ground.add_light_triangles(triangles, static_cast<std::uint32_t>(materials.size()));
+        lowest_ = gather::bounds_of(std::span(triangles).subspan(stand_count_)).low.y;
         gather_material grass;
         grass.diffuse = land::albedo;
         materials.push_back(grass);
@@ -228,15 +229,16 @@ class light {
         return {};
     }
 
+    /// The land's inner vertices, on the coarser land that light meets: many of them lie below it,
+    /// and would be in the dark.
     [[nodiscard]] static std::vector<gather_sample> inner_vertices(const land& ground) {
-        std::vector<gather_sample> samples;
-        samples.reserve(std::size_t{land::points} * land::points);
+        constexpr std::size_t count = std::size_t{land::points} * land::points;
+        std::vector<gather_sample> samples(count);
         const land_mesh mesh = ground.mesh();
-        for (std::size_t i = 0; i < samples.capacity(); ++i) {
-            gather_sample at;
-            at.position = mesh.vertices[i].position;
-            at.normal = ground.normal(at.position.x, at.position.z);
-            samples.push_back(at);
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::vec3 at = mesh.vertices[i].position;
+            samples[i].position = {at.x, ground.light_height(at.x, at.z), at.z};
+            samples[i].normal = ground.normal(at.x, at.z);
         }
         return samples;
     }
@@ -249,13 +251,13 @@ class light {
         how.sky = like.sky;
         how.resolver = like.resolver;
         how.gathered_at = [&](glm::vec3 place) {
-            const float least = ground.height(place.x, place.z) + options_.above_ground;
+            const float least = ground.light_height(place.x, place.z) + options_.above_ground;
             return glm::vec3(place.x, std::max(place.y, least), place.z);
         };
         constexpr float half = 0.5f * land::side;
         gather::bounds box;
-        box.low = {-half, scene_->box().low.y, -half};
-        box.high = {half, std::max(scene_->box().high.y, box.low.y + 10), half};
+        box.low = {-half, lowest_, -half};
+        box.high = {half, std::max(scene_->box().high.y, lowest_ + 10), half};
         return gather::irradiance_volume<B>::create(device, *scene_, box, options_.points, how);
     }
 
@@ -283,6 +285,7 @@ class light {
 
     light_options options_;
     std::uint32_t stand_count_ = 0;
+    float lowest_ = 0;                 ///< of the inner land, m
     std::unique_ptr<clouded_sky> sky_; ///< what the gathers look at: where they know it
     std::unique_ptr<gather::gather_scene<B>> scene_;
     std::optional<gather::bounced_light<B>> bounces_;
