@@ -10,16 +10,16 @@
 //         clouds->compose(recorder, {&colour, &depth, {}, {}}); // behind what has been drawn
 //     });
 //
-// The field is a disc of clouds::drift_box, 10 km across, around the origin. What a frame shows
+// The field is a disc 13 km across around the origin. What a frame shows
 // follows from weather and time alone.
 
 #include <meadow/description.hpp>
 #include <meadow/sky_field.hpp>
 #include <picture/daylight.hpp>
 #include <skybark/clouds/attenuation_volume.hpp>
-#include <skybark/clouds/cloud_billboards.hpp>
 #include <skybark/clouds/drift.hpp>
 #include <skybark/clouds/multiple_scattering.hpp>
+#include <skybark/clouds/torn_billboards.hpp>
 #include <skybark/kernels/cloud_layer.hpp>
 
 #include <numbers>
@@ -79,7 +79,7 @@ class sky {
               float air = clear_air) const {
         clouds::cloud_light_sources<B> light = light_sources();
         light.lighting.air = air;
-        puffs_->record(to, drift_->particles(), count_, eye, scene, light,
+        puffs_->record(to, {drift_->particles(), drift_->rest(), count_}, eye, scene, light, ragged,
                        draw_target<B>{&*image_, nullptr, glm::vec4(0), {}});
     }
 
@@ -135,6 +135,8 @@ class sky {
 
     /// 1/m: of a fine day's air, between the eye and a cloud.
     static constexpr float clear_air = 2.5e-5f;
+    /// How outlines are torn: grains of 120 m and half as large.
+    static constexpr kernels::torn_puff ragged{0.62f, 1.0f / 130, 0.5f};
 
   private:
     sky(sky_field&& field, const clouds::phase_function& phase)
@@ -160,7 +162,7 @@ class sky {
             return failure(drift.error());
         }
         drift_.emplace(std::move(*drift));
-        auto puffs = clouds::cloud_billboards<B>::create(device, drift_->capacity());
+        auto puffs = clouds::torn_billboards<B>::create(device, drift_->capacity());
         if (!puffs) {
             return failure(puffs.error());
         }
@@ -218,7 +220,7 @@ class sky {
     std::optional<clouds::attenuation_volume<B>> sun_;
     std::optional<clouds::attenuation_volume<B>> above_;
     std::optional<clouds::multiple_scattering<B>> scattered_;
-    std::optional<clouds::cloud_billboards<B>> puffs_;
+    std::optional<clouds::torn_billboards<B>> puffs_;
     std::optional<typename B::image> image_;
 };
 

@@ -8,18 +8,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 namespace skybark::meadow {
 
 struct sky_field_options {
     std::uint64_t seed = 1;
-    clouds::drift_box box{};               ///< what they lie in, and go round in
-    float base = 1050;                     ///< m, altitude of the level bases
-    float width = 1700;                    ///< m, across the largest
-    float thickness = 850;                 ///< m, of the largest
-    float extinction = 0.1f;               ///< 1/m, inside
+    clouds::drift_box box{{0, 0}, 13000, 5300, 6500}; ///< what they lie in, and go round in
+    float base = 1050;                                ///< m, altitude of the level bases
+    float width = 1700;                               ///< m, across the largest
+    float thickness = 850;                            ///< m, of the largest
+    float extinction = 0.2f;                          ///< 1/m, inside
     std::uint32_t particles_largest = 900; ///< of the largest; others in proportion to their area
+    std::uint32_t models = 40;             ///< different clouds; others are these, turned
     float most_cover = 0.8f;
     std::uint32_t most_clouds = 600; ///< no more, covered or not
 };
@@ -124,39 +126,65 @@ class repeated_depths {
     return best;
 }
 
-} // namespace detail
+/// A cloud that several of the field are turned from.
+struct cloud_model {
+    double half = 0;                       ///< the width, m
+    std::vector<cloud_particle> particles; ///< from the middle of the base
+};
 
-/// Clouds until `most_cover` is covered. As in clouds::cumulus_field many are small and few large,
-/// but any number of the first has all sizes, and the field fits to itself where it repeats.
-[[nodiscard]] inline sky_field make_sky_field(const sky_field_options& options) {
-    sky_field field;
-    field.box = options.box;
-    field.steps.push_back({});
-    clouds::detail::cumulus_random random(options.seed);
-    detail::repeated_depths depths(options.box);
-    std::vector<glm::dvec3> taken;
+/// As in clouds::cumulus_field many are small and few large, but any number of the first has all
+/// sizes: rank follows the golden section.
+[[nodiscard]] inline std::vector<cloud_model> cloud_models(clouds::detail::cumulus_random& random,
+                                                           const sky_field_options& options) {
+    std::vector<cloud_model> models(options.models);
     double rank = 0.5;
-    while (field.steps.back().cover < options.most_cover && taken.size() < options.most_clouds) {
-        rank += 0.6180339887498949; // the golden section: even however many there are
+    for (cloud_model& model : models) {
+        rank += 0.6180339887498949;
         rank -= std::floor(rank);
         const double size = 1 / (1 + 3 * rank);
-        const double half = 0.5 * size * double{options.width};
-        const glm::dvec2 at = detail::place_between(random, taken, half, double{options.box.side});
-        taken.emplace_back(at, half);
+        model.half = 0.5 * size * double{options.width};
         clouds::cumulus_options one;
         one.seed = random.bits();
-        one.base = glm::vec3(options.box.centre.x + static_cast<float>(at.x), options.base,
-                             options.box.centre.y + static_cast<float>(at.y));
-        one.width = static_cast<float>(2 * half);
+        one.base = glm::vec3(0);
+        one.width = static_cast<float>(2 * model.half);
         one.thickness = static_cast<float>(double{options.thickness} * std::pow(size, 0.8) *
                                            random.between(0.8, 1));
         one.particles = static_cast<std::uint32_t>(
             std::max(40.0, static_cast<double>(options.particles_largest) * size * size));
         one.extinction = options.extinction;
-        for (const cloud_particle& p : clouds::cumulus_cloud(one)) {
+        model.particles = clouds::cumulus_cloud(one);
+    }
+    return models;
+}
+
+} // namespace detail
+
+/// Clouds until `most_cover` is covered. The field fits to itself where it repeats.
+[[nodiscard]] inline sky_field make_sky_field(const sky_field_options& options) {
+    sky_field field;
+    field.box = options.box;
+    field.steps.push_back({});
+    clouds::detail::cumulus_random random(options.seed);
+    const std::vector<detail::cloud_model> models = detail::cloud_models(random, options);
+    detail::repeated_depths depths(options.box);
+    std::vector<glm::dvec3> taken;
+    while (!models.empty() && field.steps.back().cover < options.most_cover &&
+           taken.size() < options.most_clouds) {
+        const detail::cloud_model& model = models[taken.size() % models.size()];
+        const glm::dvec2 at =
+            detail::place_between(random, taken, model.half, double{options.box.side});
+        taken.emplace_back(at, model.half);
+        const glm::vec3 base(options.box.centre.x + static_cast<float>(at.x), options.base,
+                             options.box.centre.y + static_cast<float>(at.y));
+        const double turn = random.between(0, 2 * std::numbers::pi);
+        const auto c = static_cast<float>(std::cos(turn));
+        const auto s = static_cast<float>(std::sin(turn));
+        for (cloud_particle p : model.particles) {
+            const glm::vec3 from = p.position;
+            p.position = base + glm::vec3(c * from.x - s * from.z, from.y, s * from.x + c * from.z);
             depths.add(p);
             field.particles.push_back(p);
-            field.middles.emplace_back(one.base, 0.0f);
+            field.middles.emplace_back(base, 0.0f);
         }
         const auto count = static_cast<std::uint32_t>(field.particles.size());
         const float cover = depths.cover();

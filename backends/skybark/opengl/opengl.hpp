@@ -91,5 +91,6 @@
 #include <skybark/opengl/programs/sway_inertia.hpp>
 #include <skybark/opengl/programs/sway_moments.hpp>
 #include <skybark/opengl/programs/sway_motion.hpp>
+#include <skybark/opengl/programs/torn_puff.hpp>
 #include <skybark/opengl/programs/wave_wind.hpp>
 #include <skybark/opengl/programs/wind_load.hpp>

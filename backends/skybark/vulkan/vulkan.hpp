@@ -88,5 +88,6 @@
 #include <skybark/vulkan/programs/sway_inertia.hpp>
 #include <skybark/vulkan/programs/sway_moments.hpp>
 #include <skybark/vulkan/programs/sway_motion.hpp>
+#include <skybark/vulkan/programs/torn_puff.hpp>
 #include <skybark/vulkan/programs/wave_wind.hpp>
 #include <skybark/vulkan/programs/wind_load.hpp>

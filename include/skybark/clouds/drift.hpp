@@ -192,6 +192,8 @@ class drifting_particles {
 
     /// cloud_particle: where the latest `record` has moved them.
     [[nodiscard]] buffer_view<B> particles() const { return view<B>(*moved_); }
+    /// cloud_particle: where they are when nothing has drifted.
+    [[nodiscard]] buffer_view<B> rest() const { return view<B>(*rest_); }
     [[nodiscard]] std::uint32_t capacity() const noexcept { return capacity_; }
     [[nodiscard]] const drift_box& box() const noexcept { return box_; }
 

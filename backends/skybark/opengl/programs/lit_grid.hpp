@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 a2e85e582400694ac2c5b7c5864ca3c47acaeb7fdb7e7b3a74972f760cc486bc
+// sha256 49fd9a8cfbc1dbb532bb77f6f1f1af8c592608084d26e6d9f896dbbceb4144b0
 #pragma once
 
 #include <skybark/kernels/lit_grid.hpp>
@@ -547,7 +547,7 @@ return lit_texels / 9.0;
 #endif
 layout(std430, binding = 0) readonly buffer scene_buffer { scene_record scene; };
 layout(std430, binding = 1) readonly buffer lighting_buffer { cloud_lighting lighting; };
-#ifdef SKYBARK_FRAGMENT_STAGE
+#ifndef SKYBARK_VERTEX_STAGE
 float cloud_volume(int n, light_grid grid, vec3 place) {
 vec3 at = cloud_texel(grid, vec3(textureSize(kernel_volumes[n], 0)), place);
 return textureLod(kernel_volumes[n], at, 0.0).x;
@@ -633,7 +633,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 19356};
+)glsl", 19355};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1171,7 +1171,7 @@ return lit_texels / 9.0;
 #endif
 layout(std430, binding = 0) readonly buffer scene_buffer { scene_record scene; };
 layout(std430, binding = 1) readonly buffer lighting_buffer { cloud_lighting lighting; };
-#ifdef SKYBARK_FRAGMENT_STAGE
+#ifndef SKYBARK_VERTEX_STAGE
 float cloud_volume(int n, light_grid grid, vec3 place) {
 vec3 at = cloud_texel(grid, vec3(textureSize(kernel_volumes[n], 0)), place);
 return textureLod(kernel_volumes[n], at, 0.0).x;
@@ -1261,7 +1261,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 19369};
+)glsl", 19368};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5af1cb823e3208aef547b2b360c4d82ac8fc40fa3897df3ffa1d90e27778d725
+// sha256 36d32241ecab2e1003b2565f3eb44e725b4c1501fc103c9b71c31a9daa3ef6df
 #pragma once
 
 #include <skybark/kernels/lit_puff.hpp>
@@ -548,7 +548,7 @@ layout(std430, binding = 1) readonly buffer order_buffer { uint order[]; };
 layout(std430, binding = 2) readonly buffer light_buffer { float light[]; };
 layout(std430, binding = 3) readonly buffer scene_buffer { scene_record scene; };
 layout(std430, binding = 4) readonly buffer lighting_buffer { cloud_lighting lighting; };
-#ifdef SKYBARK_FRAGMENT_STAGE
+#ifndef SKYBARK_VERTEX_STAGE
 float cloud_volume(int n, light_grid grid, vec3 place) {
 vec3 at = cloud_texel(grid, vec3(textureSize(kernel_volumes[n], 0)), place);
 return textureLod(kernel_volumes[n], at, 0.0).x;
@@ -651,7 +651,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 20166};
+)glsl", 20165};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1190,7 +1190,7 @@ layout(std430, binding = 1) readonly buffer order_buffer { uint order[]; };
 layout(std430, binding = 2) readonly buffer light_buffer { float light[]; };
 layout(std430, binding = 3) readonly buffer scene_buffer { scene_record scene; };
 layout(std430, binding = 4) readonly buffer lighting_buffer { cloud_lighting lighting; };
-#ifdef SKYBARK_FRAGMENT_STAGE
+#ifndef SKYBARK_VERTEX_STAGE
 float cloud_volume(int n, light_grid grid, vec3 place) {
 vec3 at = cloud_texel(grid, vec3(textureSize(kernel_volumes[n], 0)), place);
 return textureLod(kernel_volumes[n], at, 0.0).x;
@@ -1297,7 +1297,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 20179};
+)glsl", 20178};
 };
 
 } // namespace skybark::opengl

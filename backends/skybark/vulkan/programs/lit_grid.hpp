@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 59ba05aa265263118bbb210f31781e52bebe0e14b0cdafd1a5af718221f6bec8
+// sha256 d09df16187c1610398468626437eee8a47705da11ddf1f408b75f9dcc5b957b9
 #pragma once
 
 #include <skybark/kernels/lit_grid.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 7d7272494479d208770289bea4b7a77e27943458fc97074fb13f299219820f71
+// sha256 694ec7234a470cf51e7357bc6e40fa5675e4e57a4fe5875374f092ed01c9bf5f
 #pragma once
 
 #include <skybark/kernels/lit_puff.hpp>
