@@ -111,6 +111,15 @@ class stand {
             }
             grown = grown || *more;
         }
+        if (grass_) {
+            for (blades& kind : grass_->kinds) {
+                const auto more = kind.mesh.grow(device);
+                if (!more) {
+                    return more;
+                }
+                grown = grown || *more;
+            }
+        }
         return grown;
     }
 
@@ -276,9 +285,12 @@ class stand {
         view.thin = 0;
         return view;
     }
-    [[nodiscard]] static trees::leaf_mesh_options as_list() {
+    /// Lists with room for so many triangles a leaf.
+    [[nodiscard]] static trees::leaf_mesh_options as_list(std::size_t leaves,
+                                                          std::uint64_t triangles) {
         trees::leaf_mesh_options options;
         options.form = trees::mesh_form::list;
+        options.room = leaves * triangles;
         return options;
     }
 
@@ -351,15 +363,15 @@ class stand {
         typename tree_type::options_type options;
         options.branches.rings = 3;
         options.branches.room = 4 * of.wood.size();
-        options.leaves = as_list();
+        options.leaves = as_list(of.leaves.size(), 2);
         options.leaf_cover = of.leaf_cover;
         options.view = view_;
         auto living = tree_type::create(device, of.wood, of.leaves, {}, options);
         if (!living) {
             return failure(living.error());
         }
-        auto light_leaves = trees::leaf_mesh<B>::create(
-            device, coarse_leaves(of.leaves, budget.leaves, of.leaf_cover), as_list());
+        const std::vector<leaf> coarse = coarse_leaves(of.leaves, budget.leaves, of.leaf_cover);
+        auto light_leaves = trees::leaf_mesh<B>::create(device, coarse, as_list(coarse.size(), 2));
         if (!light_leaves) {
             return failure(light_leaves.error());
         }
@@ -414,10 +426,11 @@ class stand {
         grass_.emplace(grass{std::move(*moving), std::move(*loads), {}, 0, 0});
         grass_->first = feel(device, ground, grown->stems);
         grass_->stems = static_cast<std::uint32_t>(grown->stems.size());
-        trees::leaf_mesh_options options = as_list();
-        options.flutter = 0.12f;
-        options.lean = 0.5f;
         for (grown_blades& kind : grown->kinds) {
+            trees::leaf_mesh_options options = as_list(kind.blades.size(), 3);
+            options.flutter = 0.12f;
+            options.lean = 0.5f;
+            options.quad = 45; // a tuft's picture hides its outline
             auto mesh = trees::leaf_mesh<B>::create(device, kind.blades, options);
             if (!mesh) {
                 return failure(mesh.error());

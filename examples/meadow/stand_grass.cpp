@@ -66,18 +66,18 @@ struct stroke {
 material tuft_picture(std::uint32_t seed) {
     scenes::random_numbers random(seed);
     std::vector<stroke> strokes;
-    for (int i = 0; i < 15; ++i) {
+    for (int i = 0; i < 30; ++i) {
         stroke s;
-        s.flowering = i >= 12;
-        s.foot = random.between(0.40f, 0.60f);
-        const float top = s.flowering ? random.between(0.88f, 0.97f) : random.between(0.45f, 0.9f);
+        s.flowering = i % 13 == 12;
+        s.foot = random.between(0.36f, 0.64f);
+        const float top = s.flowering ? random.between(0.88f, 0.97f) : random.between(0.5f, 0.93f);
         const float room = top > 0.854f ? 0.354f * (1 - top) / 0.146f : 0.37f;
         s.tip = {0.5f + random.between(-room, room), top};
-        s.width = s.flowering ? 0.012f : random.between(0.030f, 0.045f);
+        s.width = s.flowering ? 0.012f : random.between(0.040f, 0.062f);
         s.shade = random.between(0.82f, 1.12f);
         strokes.push_back(s);
     }
-    const glm::vec3 green(0.37f, 0.45f, 0.19f);
+    const glm::vec3 green(0.33f, 0.44f, 0.19f);
     return drawn(green, 0.75f, [&](float x, float y, glm::vec3& color) {
         bool hit = false;
         for (const stroke& s : strokes) { // the last is in front
@@ -95,7 +95,7 @@ material tuft_picture(std::uint32_t seed) {
                 continue;
             }
             hit = true;
-            const glm::vec3 tip(0.49f, 0.53f, 0.25f);
+            const glm::vec3 tip(0.43f, 0.51f, 0.24f);
             const glm::vec3 straw(0.58f, 0.52f, 0.34f);
             color = spike ? straw * s.shade
                           : glm::mix(green * 0.78f, tip, t) * s.shade * (x > middle ? 1.0f : 0.93f);
@@ -129,8 +129,8 @@ float density(glm::vec2 place) {
     const glm::vec2 ahead = glm::normalize(glm::vec2(usual.target.x, usual.target.z) - eye);
     const glm::vec2 from = place - eye;
     const float far = std::max(glm::length(from), 1.0f);
-    const float most = 30;
-    const float thinned = most * std::pow(std::min(1.0f, 11 / far), 1.2f);
+    constexpr float most = 40;
+    const float thinned = most * std::pow(std::min(1.0f, 13 / far), 1.2f);
     const bool seen = glm::dot(from, ahead) > 0.72f * far || far < 8;
     return seen ? thinned : 0.35f * thinned;
 }
@@ -190,9 +190,9 @@ class sower {
 
     void add_flowers(glm::vec2 corner, float here, float share, std::size_t kind) {
         const float part = std::max(0.0f, share - 0.22f);
-        for (int n = number(0.9f * here * part); n > 0; --n) {
+        for (int n = number(1.3f * here * part); n > 0; --n) {
             const glm::vec2 place = within(corner);
-            const float tall = random_.between(0.34f, 0.52f);
+            const float tall = random_.between(0.42f, 0.62f);
             add_flower(place, add_stem(place, tall, 0.001f, 0.008f), tall, kind);
         }
     }
@@ -232,7 +232,7 @@ class sower {
         const camera usual;
         const float far = glm::distance(place, glm::vec2(usual.eye.x, usual.eye.z));
         const float lush = 0.65f + 0.7f * patch(place, 5, 1) * (0.5f + patch(place, 19, 2));
-        const float length = 0.36f * lush * random_.between(0.75f, 1.2f);
+        const float length = 0.44f * lush * random_.between(0.75f, 1.2f);
         const float width = (0.34f + std::min(0.5f, 0.006f * far)) * random_.between(0.8f, 1.2f);
         const glm::vec3 lean = 0.35f * random_.in_ball();
         leaf made = placed(ground_.on(place.x, place.y) - glm::vec3(0, 0.02f, 0),
@@ -244,7 +244,7 @@ class sower {
     }
 
     void add_flower(glm::vec2 place, std::uint32_t stem, float tall, std::size_t kind) {
-        const float size = (kind == 1 ? 0.062f : 0.045f) * random_.between(0.8f, 1.2f);
+        const float size = (kind == 1 ? 0.085f : 0.06f) * random_.between(0.8f, 1.2f);
         const glm::vec3 up = glm::normalize(glm::vec3(0, 1, 0) + 0.5f * random_.in_ball());
         const glm::vec3 y = glm::normalize(glm::cross(up, level()));
         const glm::vec3 middle = ground_.on(place.x, place.y) + glm::vec3(0, tall, 0);

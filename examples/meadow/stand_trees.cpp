@@ -100,9 +100,13 @@ trees::weber_penn_parameters simplified(std::uint32_t species) {
     p.scale_v = 0;
     switch (species) {
     case oak:
-        p.level[1].branches = 34;
+        p.base_size = 0.16f;
+        p.ratio = 0.016f;
+        p.level[1].branches = 30;
         p.level[1].curve_res = 6;
-        p.level[2].branches = 44;
+        p.level[1].length = 0.7f;
+        p.level[2].branches = 84;
+        p.level[2].length = 0.27f;
         p.level[2].curve_res = 2;
         break;
     case aspen:
@@ -135,9 +139,9 @@ trees::leaf_options blades_of(std::uint32_t species) {
     trees::leaf_options o = trees::leaves_of(entry);
     switch (species) {
     case oak:
-        o.per_twig = 13;
-        o.length = 0.20f;
-        o.reach = 0.9f;
+        o.per_twig = 18;
+        o.length = 0.21f;
+        o.reach = 1.2f;
         break;
     case aspen:
         o.per_twig = 15;
@@ -147,8 +151,8 @@ trees::leaf_options blades_of(std::uint32_t species) {
         break;
     case willow:
         o.per_twig = 0;
-        o.per_metre = 16;
-        o.length = 0.26f;
+        o.per_metre = 10;
+        o.length = 0.30f;
         o.width = 0.22f;
         o.reach = 3.5f;
         break;
@@ -174,7 +178,7 @@ material bark_of(std::uint32_t species, float girth, std::uint64_t seed) {
         break;
     case aspen:
         made.low = {0.30f, 0.30f, 0.24f};
-        made.high = {0.60f, 0.59f, 0.49f};
+        made.high = {0.52f, 0.51f, 0.42f};
         break;
     case willow:
         made.low = {0.07f, 0.055f, 0.035f};

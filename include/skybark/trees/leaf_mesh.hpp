@@ -20,11 +20,13 @@ namespace skybark::trees {
 struct leaf_mesh_options {
     mesh_form form = mesh_form::rings;
     padding policy = padding::compact; ///< of the list
-    float flutter = 0.5f;              ///< tangent of half the largest twist
-    float flutter_speed = 3.0f;        ///< m/s where half of it is reached, > 0
-    float lean = 0.6f;                 ///< tangent of half the largest lean with the wind
-    float lean_speed = 10.0f;          ///< m/s where half of it is reached, > 0
-    float full = 3; ///< pixels: smaller leaves are thinned out by a view's `thin`
+    /// Of the list: room for so many triangles in all, shared out by leaves. 0: for full detail.
+    std::uint64_t room = 0;
+    float flutter = 0.5f;       ///< tangent of half the largest twist
+    float flutter_speed = 3.0f; ///< m/s where half of it is reached, > 0
+    float lean = 0.6f;          ///< tangent of half the largest lean with the wind
+    float lean_speed = 10.0f;   ///< m/s where half of it is reached, > 0
+    float full = 3;             ///< pixels: smaller leaves are thinned out by a view's `thin`
     float quad = 4; ///< pixels: smaller ones are quadrilaterals by its `error`, half so up to twice
 };
 
@@ -52,7 +54,7 @@ class leaf_mesh {
         buffer count;    ///< one count_record, of the list form
         std::uint32_t elements = 0;
         std::uint32_t vertex_count = 0;
-        std::uint32_t triangles = 0; ///< in the list form, the most
+        std::uint32_t triangles = 0; ///< in the list form, the most that there is room for
     };
 
     /// Sends the leaves to the device and makes room for their mesh. None is fine.
@@ -109,7 +111,32 @@ class leaf_mesh {
         return g;
     }
 
-    /// The most that there can be; level of detail makes fewer.
+    /// Makes room where the last record of a list had too little, a quarter more than it needed.
+    /// True if any was made: then record again. What had been made is gone. Waits for the device.
+    [[nodiscard]] result<bool> grow(B& device) {
+        bool grown = false;
+        for (part& p : parts_) {
+            if (options_.form != mesh_form::list) {
+                break;
+            }
+            count_record count;
+            if (auto done = read_back<B, count_record>(device, p.count, {&count, 1}); !done) {
+                return failure(done.error());
+            }
+            if (count.required <= p.triangles) {
+                continue;
+            }
+            const std::uint64_t full = std::uint64_t{p.elements} * blade_.ring_triangles();
+            const std::uint64_t wanted = std::uint64_t{count.required} + count.required / 4;
+            if (auto done = make_room(device, p, std::min(full, wanted)); !done) {
+                return failure(done.error());
+            }
+            grown = true;
+        }
+        return grown;
+    }
+
+    /// The most that there is room for; level of detail makes fewer.
     [[nodiscard]] std::uint64_t triangles() const { return total(&part::triangles); }
     [[nodiscard]] std::uint64_t vertices() const { return total(&part::vertex_count); }
     [[nodiscard]] const leaf_mesh_options& options() const { return options_; }
@@ -191,11 +218,14 @@ class leaf_mesh {
         }
         for (std::uint64_t first = 0; first < leaves.size(); first += most) {
             const std::uint64_t count = std::min<std::uint64_t>(most, leaves.size() - first);
-            if (auto done = add_part(device, leaves.subspan(first, count), count * bytes); !done) {
+            // Rounded up, so that no part is left without any.
+            const std::uint64_t share = (options_.room * count + leaves.size() - 1) / leaves.size();
+            const bool full = !list || options_.room == 0;
+            const std::uint64_t room =
+                full ? count * triangles : std::min(count * triangles, share);
+            if (auto done = add_part(device, leaves.subspan(first, count), room); !done) {
                 return done;
             }
-            parts_.back().vertex_count = static_cast<std::uint32_t>(count * each);
-            parts_.back().triangles = static_cast<std::uint32_t>(count * triangles);
         }
         return list || parts_.empty() ? result<void>{} : make_indices(device);
     }
@@ -208,13 +238,14 @@ class leaf_mesh {
         return {};
     }
 
+    /// A part of these leaves, with room for so many triangles.
     [[nodiscard]] result<void> add_part(B& device, std::span<const leaf> leaves,
-                                        std::uint64_t vertex_bytes) {
+                                        std::uint64_t triangles) {
         auto leaf_buffer = make_buffer<B, leaf>(device, leaves);
         if (!leaf_buffer) {
             return failure(leaf_buffer.error());
         }
-        auto vertex_buffer = device.create_buffer(vertex_bytes);
+        auto vertex_buffer = device.create_buffer(0);
         if (!vertex_buffer) {
             return failure(vertex_buffer.error());
         }
@@ -225,6 +256,20 @@ class leaf_mesh {
         parts_.push_back({std::move(*leaf_buffer), std::move(*vertex_buffer),
                           std::move(*count_buffer), static_cast<std::uint32_t>(leaves.size()), 0,
                           0});
+        return make_room(device, parts_.back(), triangles);
+    }
+
+    [[nodiscard]] result<void> make_room(B& device, part& p, std::uint64_t triangles) const {
+        const std::uint64_t vertices = options_.form == mesh_form::list
+                                           ? 3 * triangles
+                                           : std::uint64_t{p.elements} * blade_.ring_vertices();
+        auto room = device.create_buffer(vertices * sizeof(surface_vertex));
+        if (!room) {
+            return failure(room.error());
+        }
+        p.vertices = std::move(*room);
+        p.vertex_count = static_cast<std::uint32_t>(vertices);
+        p.triangles = static_cast<std::uint32_t>(triangles);
         return {};
     }
 

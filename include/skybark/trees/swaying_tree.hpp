@@ -233,16 +233,20 @@ class swaying_tree {
     /// detailed_branch_mesh, are thinned out with distance.
     void look_from(const view_detail& view) { view_ = view; }
 
-    /// Makes more room for bark, or for branches that are a detailed_branch_mesh, where the last
-    /// frame had too little: true if it did.
+    /// Makes more room for bark, for leaves, or for branches that are a detailed_branch_mesh, where
+    /// the last frame had too little: true if it did.
     [[nodiscard]] result<bool> update(B& device) {
-        bool grown = false;
+        const auto more_leaves = leaves_.grow(device);
+        if (!more_leaves) {
+            return more_leaves;
+        }
+        bool grown = *more_leaves;
         if constexpr (requires { mesh_.grow(device); }) {
             const auto more = mesh_.grow(device);
             if (!more) {
                 return more;
             }
-            grown = *more;
+            grown = grown || *more;
         }
         if (!bark_) {
             return grown;
