@@ -67,7 +67,6 @@ void draw_panel(session& on, const report& tells, std::uint32_t most_bounces) {
     ImGui::SetNextWindowSize({280, 0}, ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Skybark")) {
         ImGui::PushItemWidth(-90);
-        ImGui::TextWrapped("%s", tells.device.c_str());
         draw_sliders(on, most_bounces);
         if (ImGui::Button(on.paused ? "Go on" : "Pause")) {
             on.press(key::space);
@@ -76,6 +75,7 @@ void draw_panel(session& on, const report& tells, std::uint32_t most_bounces) {
         if (ImGui::Button("Sliders back")) {
             on.reset_settings();
         }
+        ImGui::TextWrapped("%s", tells.device.c_str());
         draw_times(tells);
         ImGui::TextDisabled("Space pauses, R resets,\nH hides, F12 saves, Esc quits.");
         ImGui::PopItemWidth();

@@ -137,16 +137,11 @@ class viewer {
         scene_.look(camera_of(session_.view, ground_), session_.now.detail);
         scene_.bounce(std::min(session_.now.bounces, asked_.scene.what.bounces));
         const std::uint64_t sent = screen_.device().traffic().up;
-        scene_.begin_frame(session_.time);
-        auto done = screen_.run(
-            meadow::stages.size(),
-            [this](auto& recorder, std::size_t i) { scene_.record(recorder, meadow::stages[i]); },
-            seconds_);
-        if (!done) {
+        if (auto done = record_scene(); !done) {
             return done;
         }
-        drawn_ = {true, session_.now, session_.view, session_.time};
         tells_.sent = screen_.device().traffic().up - sent;
+        drawn_ = {true, session_.now, session_.view, session_.time};
         tells_.memory = resident_bytes();
         tells_.wall = passed;
         const auto triangles = scene_.triangles();
@@ -154,6 +149,31 @@ class viewer {
             return failure(triangles.error());
         }
         tells_.triangles = *triangles;
+        return {};
+    }
+
+    /// Again, where triangles did not fit: there is more room for them then.
+    [[nodiscard]] result<void> record_scene() {
+        constexpr int most_turns = 4;
+        for (int turn = 0; turn < most_turns; ++turn) {
+            scene_.begin_frame(session_.time);
+            auto done = screen_.run(
+                meadow::stages.size(),
+                [this](auto& recorder, std::size_t i) {
+                    scene_.record(recorder, meadow::stages[i]);
+                },
+                seconds_);
+            if (!done) {
+                return done;
+            }
+            const auto more = scene_.update();
+            if (!more) {
+                return failure(more.error());
+            }
+            if (!*more) {
+                break;
+            }
+        }
         return {};
     }
 

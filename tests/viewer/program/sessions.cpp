@@ -1,0 +1,160 @@
+// A scripted session, with a window and without, and one by mouse and keyboard. The drivers' own
+// checks are on: they must have nothing to say.
+
+#include "support.hpp"
+
+#include <chrono>
+#include <thread>
+
+namespace skybark::viewer {
+namespace {
+
+class viewer_sessions : public program, public testing::WithParamInterface<const char*> {
+  protected:
+    [[nodiscard]] words arguments(const words& more) const {
+        words all{"--backend", GetParam(), "--check", "--size", "320x200"};
+        all.insert(all.end(), small.begin(), small.end());
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+
+    /// The session, and whether it went well.
+    void play(const std::string& on, const words& more) {
+        tests::write_file(folder / "session.txt", "wait 2\n"
+                                                  "key Space\n"
+                                                  "save panel.png\n"
+                                                  "save panel_again.png\n"
+                                                  "key H\n"
+                                                  "save first.png\n"
+                                                  "key F12\n"
+                                                  "drag left 60 10\n"
+                                                  "save orbit.png\n"
+                                                  "drag middle -30 20\n"
+                                                  "save pan.png\n"
+                                                  "scroll 4\n"
+                                                  "save zoom.png\n"
+                                                  "set sun_elevation 8\n"
+                                                  "save evening.png\n"
+                                                  "key Space\n"
+                                                  "wait 1\n"
+                                                  "save later.png\n"
+                                                  "key Escape\n"
+                                                  "save never.png\n");
+        words all{"--script", "session.txt"};
+        all.insert(all.end(), more.begin(), more.end());
+        const outcome done = view(on, arguments(all));
+        SKYBARK_SKIP_UNAVAILABLE(done, GetParam());
+        ASSERT_EQ(done.code, 0) << done.err;
+        EXPECT_EQ(done.err, "");
+        EXPECT_EQ(names(),
+                  (std::set<std::string>{"evening.png", "first.png", "later.png", "orbit.png",
+                                         "pan.png", "panel.png", "panel_again.png", "session.txt",
+                                         "skybark_0001.png", "zoom.png"}));
+    }
+
+    /// What must be alike, and what must not.
+    void expect_what_was_done() const {
+        EXPECT_EQ(different("panel.png", "panel_again.png"), 0); // time stands still
+        EXPECT_GT(different("panel.png", "first.png"), 0.3);     // what the panel covers
+        EXPECT_EQ(different("first.png", "skybark_0001.png"), 0);
+        EXPECT_GT(different("first.png", "orbit.png"), 0.2);
+        EXPECT_GT(different("orbit.png", "pan.png"), 0.2);
+        EXPECT_GT(different("pan.png", "zoom.png"), 0.2);
+        EXPECT_GT(different("zoom.png", "evening.png"), 0.5);
+        EXPECT_GT(different("evening.png", "later.png"), 0.01); // it sways again
+    }
+};
+
+TEST_P(viewer_sessions, without_a_window_and_in_one_show_the_same) {
+    play("", {"--headless"});
+    if (IsSkipped() || HasFatalFailure()) {
+        return;
+    }
+    expect_what_was_done();
+    std::vector<std::vector<unsigned char>> before;
+    const words bare{"first.png", "orbit.png", "pan.png", "zoom.png", "evening.png", "later.png"};
+    for (const std::string& name : bare) {
+        before.push_back(pixels(name));
+    }
+    for (const std::string& name : names()) {
+        std::filesystem::remove(folder / name);
+    }
+    const display screen;
+    if (screen.name().empty()) {
+        if (windows_are_required()) {
+            FAIL() << "Xvfb does not start.";
+        }
+        GTEST_SKIP() << "Xvfb does not start.";
+    }
+    play(screen.name(), {});
+    expect_what_was_done();
+    for (std::size_t i = 0; i < bare.size(); ++i) {
+        EXPECT_TRUE(pixels(bare[i]) == before[i]) << bare[i]; // bytes enough for no log
+    }
+}
+
+/// Mouse and keyboard by the X server's own test extension.
+class viewer_input : public viewer_sessions {
+  protected:
+    /// What xdotool was asked to do was done.
+    [[nodiscard]] bool act(const std::string& on, const std::string& what) const {
+        const std::string line = "DISPLAY=" + on + " timeout 30 xdotool " + what + " >/dev/null";
+        return std::system(line.c_str()) == 0;
+    }
+    /// Presses F12 and waits for the picture.
+    void save(const std::string& on, const std::string& name) const {
+        ASSERT_TRUE(act(on, "key F12"));
+        for (int tenths = 0; tenths < 300; ++tenths) {
+            if (std::filesystem::exists(folder / name)) {
+                return;
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
+        FAIL() << name << " does not come.";
+    }
+};
+
+TEST_P(viewer_input, reaches_the_camera_and_the_panel) {
+    const display screen;
+    if (screen.name().empty() || std::system("command -v xdotool >/dev/null") != 0) {
+        if (windows_are_required()) {
+            FAIL() << "Xvfb or xdotool does not start.";
+        }
+        GTEST_SKIP() << "Xvfb or xdotool does not start.";
+    }
+    const std::string on = screen.name();
+    const pid_t viewer = start(command(on, arguments({})));
+    ASSERT_TRUE(act(on, "search --sync --onlyvisible --name '^Skybark$'"));
+    // Outside the panel, so that the window has the keys and the camera the mouse.
+    ASSERT_TRUE(act(on, "mousemove 305 100 sleep 0.2 key space"));
+    save(on, "skybark_0001.png");
+    ASSERT_TRUE(act(on, "key h"));
+    save(on, "skybark_0002.png");
+    ASSERT_TRUE(act(on, "mousedown 1 sleep 0.1 mousemove 250 120 sleep 0.1 mouseup 1"));
+    save(on, "skybark_0003.png");
+    ASSERT_TRUE(act(on, "mousedown 2 sleep 0.1 mousemove 280 90 sleep 0.1 mouseup 2"));
+    save(on, "skybark_0004.png");
+    ASSERT_TRUE(act(on, "click 4 click 4 click 4"));
+    save(on, "skybark_0005.png");
+    // The slider of the sun's elevation is the second in the panel; a click on its left end lets
+    // the sun set.
+    ASSERT_TRUE(act(on, "key h sleep 0.3 mousemove 20 67 sleep 0.3 click 1 sleep 0.3 key h"));
+    save(on, "skybark_0006.png");
+    ASSERT_TRUE(act(on, "key Escape"));
+    const outcome done = finish(viewer);
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_EQ(done.err, "");
+    EXPECT_GT(different("skybark_0001.png", "skybark_0002.png"), 0.3);
+    for (int i = 2; i < 6; ++i) {
+        const std::string one = "skybark_000" + std::to_string(i) + ".png";
+        const std::string next = "skybark_000" + std::to_string(i + 1) + ".png";
+        EXPECT_GT(different(one, next), 0.2) << one << ", " << next;
+    }
+}
+
+std::string name_of(const testing::TestParamInfo<const char*>& info) { return info.param; }
+INSTANTIATE_TEST_SUITE_P(, viewer_sessions, testing::Values("opengl", "vulkan"), name_of);
+INSTANTIATE_TEST_SUITE_P(, viewer_input, testing::Values("opengl", "vulkan"), name_of);
+
+} // namespace
+} // namespace skybark::viewer
