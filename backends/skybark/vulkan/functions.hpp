@@ -2,12 +2,18 @@
 // Our own table of Vulkan functions, one a device, loaded through the caller's
 // vkGetInstanceProcAddr. Nothing is linked, no loader is asked for, and nothing is global: two
 // devices of two drivers have a table each. Only types of vulkan_core.h are used, so it works with
-// VK_NO_PROTOTYPES and without.
+// VK_NO_PROTOTYPES and without. A vulkan.h that is included already is the one that is used.
 
 #include <skybark/core/result.hpp>
 
 #include <string>
-#include <vulkan/vulkan_core.h>
+
+#if !defined(VULKAN_CORE_H_)
+#    include <vulkan/vulkan_core.h>
+#endif
+#if !defined(VK_VERSION_1_3)
+#    error "Skybark needs the headers of Vulkan 1.3 or newer."
+#endif
 
 namespace skybark::vulkan {
 

@@ -210,23 +210,23 @@ class pipeline_cache {
 
     [[nodiscard]] result<void> fill_layout(program_layout& l) {
         context& c = *context_;
-        std::vector<VkDescriptorSetLayoutBinding> slots;
+        std::vector<VkDescriptorSetLayoutBinding> places;
         const VkShaderStageFlags stages = l.shape.stages();
         for (std::uint32_t i = 0; i < l.shape.buffers(); ++i) {
-            slots.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, stages, nullptr});
+            places.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, stages, nullptr});
         }
         const VkShaderStageFlags readers =
             l.shape.draws ? VkShaderStageFlags{VK_SHADER_STAGE_FRAGMENT_BIT} : stages;
         for (std::uint32_t slot = 0; slot < image_slots; ++slot) {
             if (l.shape.images[slot] != 0) {
-                slots.push_back({images_binding + slot, descriptor_of(slot), l.shape.images[slot],
-                                 readers, nullptr});
+                places.push_back({images_binding + slot, descriptor_of(slot), l.shape.images[slot],
+                                  readers, nullptr});
             }
         }
         auto set = make<VkDescriptorSetLayoutCreateInfo>(
             VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-        set.bindingCount = static_cast<std::uint32_t>(slots.size());
-        set.pBindings = slots.data();
+        set.bindingCount = static_cast<std::uint32_t>(places.size());
+        set.pBindings = places.data();
         if (auto done = c.check(
                 c.call.create_descriptor_set_layout(c.device(), &set, c.callbacks(), &l.set),
                 "make a descriptor set layout");
