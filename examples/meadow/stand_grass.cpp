@@ -62,23 +62,32 @@ struct stroke {
     bool flowering; ///< a stalk with a spike of seeds
 };
 
-/// A tuft of blades that fits a leaf's octagon.
-material tuft_picture(std::uint32_t seed) {
+/// What a kind of grass looks like: sRGB at the foot and at the tip of its blades, and how many of
+/// its stalks flower.
+struct grass_look {
+    glm::vec3 foot;
+    glm::vec3 tip;
+    glm::vec3 spike;
+    int blades;
+    int stalks;
+};
+
+/// A tuft of blades that fits a leaf's octagon, and the quadrilateral that stands for it.
+material tuft_picture(const grass_look& grass, std::uint32_t seed) {
     scenes::random_numbers random(seed);
     std::vector<stroke> strokes;
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < grass.blades + grass.stalks; ++i) {
         stroke s;
-        s.flowering = i % 13 == 12;
+        s.flowering = i * grass.stalks % (grass.blades + grass.stalks) < grass.stalks;
         s.foot = random.between(0.36f, 0.64f);
-        const float top = s.flowering ? random.between(0.88f, 0.97f) : random.between(0.5f, 0.93f);
+        const float top = s.flowering ? random.between(0.86f, 0.97f) : random.between(0.5f, 0.93f);
         const float room = top > 0.854f ? 0.354f * (1 - top) / 0.146f : 0.37f;
         s.tip = {0.5f + random.between(-room, room), top};
-        s.width = s.flowering ? 0.012f : random.between(0.040f, 0.062f);
+        s.width = s.flowering ? 0.014f : random.between(0.040f, 0.062f);
         s.shade = random.between(0.82f, 1.12f);
         strokes.push_back(s);
     }
-    const glm::vec3 green(0.33f, 0.44f, 0.19f);
-    return drawn(green, 0.75f, [&](float x, float y, glm::vec3& color) {
+    return drawn(grass.foot, 0.62f, [&](float x, float y, glm::vec3& color) {
         bool hit = false;
         for (const stroke& s : strokes) { // the last is in front
             const float t = y / s.tip.y;
@@ -86,23 +95,26 @@ material tuft_picture(std::uint32_t seed) {
                 continue;
             }
             const float middle = s.foot + (s.tip.x - s.foot) * t * t;
-            float half = s.width * std::sqrt(1 - t) * 0.5f;
-            const bool spike = s.flowering && t > 0.78f;
-            if (spike) {
-                half = 0.017f * std::sin(std::numbers::pi_v<float> * (t - 0.78f) / 0.22f) + 0.004f;
-            }
+            const bool spike = s.flowering && t > 0.76f;
+            const float along = std::max(0.0f, (t - 0.76f) / 0.24f);
+            const float half = spike ? 0.004f + 0.02f * std::sin(std::numbers::pi_v<float> * along)
+                                     : s.width * std::sqrt(1 - t) * 0.5f;
             if (std::abs(x - middle) > half) {
                 continue;
             }
             hit = true;
-            const glm::vec3 tip(0.43f, 0.51f, 0.24f);
-            const glm::vec3 straw(0.58f, 0.52f, 0.34f);
-            color = spike ? straw * s.shade
-                          : glm::mix(green * 0.78f, tip, t) * s.shade * (x > middle ? 1.0f : 0.93f);
+            const glm::vec3 blade = glm::mix(grass.foot * 0.78f, grass.tip, t);
+            const float side = x > middle ? 1.0f : 0.93f; // of the midrib
+            color = (spike ? grass.spike : blade * side) * s.shade;
         }
         return hit;
     });
 }
+
+constexpr grass_look lush_grass{
+    {0.32f, 0.43f, 0.19f}, {0.41f, 0.49f, 0.24f}, {0.47f, 0.47f, 0.29f}, 28, 2};
+constexpr grass_look dry_grass{
+    {0.36f, 0.42f, 0.20f}, {0.50f, 0.50f, 0.28f}, {0.62f, 0.55f, 0.37f}, 24, 7};
 
 /// A disc of petals around a middle.
 material flower_picture(int petals, float slender, glm::vec3 petal, glm::vec3 middle, float eye) {
@@ -148,50 +160,66 @@ class sower {
 
     void sow() {
         constexpr int half = static_cast<int>(land::side) / 2;
-        for (int z = -half; z < half; ++z) {
-            for (int x = -half; x < half; ++x) {
-                sow_square({static_cast<float>(x), static_cast<float>(z)});
+        for (int z = -half; z < half; z += 2) {
+            for (int x = -half; x < half; x += 2) {
+                const glm::vec2 corner(static_cast<float>(x), static_cast<float>(z));
+                if (distance(corner + 1.0f) > 40) {
+                    sow_square(corner, 2, 12);
+                    continue;
+                }
+                for (int k = 0; k < 4; ++k) {
+                    sow_square(corner +
+                                   glm::vec2(static_cast<float>(k % 2), static_cast<float>(k / 2)),
+                               1, 4);
+                }
             }
         }
     }
 
     std::vector<trees::segment> stems;
     std::vector<float> area;
-    std::array<std::vector<leaf>, 3> blades; ///< tufts, and two kinds of flowers
+    std::array<std::vector<leaf>, 4> blades; ///< two kinds of tufts, two of flowers
 
   private:
     static constexpr float stem_length = 0.3f;
 
-    [[nodiscard]] glm::vec2 within(glm::vec2 corner) {
-        return corner + glm::vec2(random_.between(0, 1), random_.between(0, 1));
+    /// From the usual camera, m.
+    [[nodiscard]] static float distance(glm::vec2 place) {
+        const camera usual;
+        return glm::distance(place, glm::vec2(usual.eye.x, usual.eye.z));
+    }
+    [[nodiscard]] glm::vec2 within(glm::vec2 corner, float size) {
+        const float x = random_.between(0, size);
+        return corner + glm::vec2(x, random_.between(0, size));
     }
     /// So many on the whole: the fraction by chance.
     [[nodiscard]] int number(float expected) {
         return static_cast<int>(expected + random_.between(0, 1));
     }
 
-    /// Four tufts share a stem; flowers have their own.
-    void sow_square(glm::vec2 corner) {
-        const float here = density(corner + 0.5f) * amount_;
+    /// Tufts share a stem, so many of them; flowers have their own.
+    void sow_square(glm::vec2 corner, float size, int shared) {
+        const float here = density(corner + size / 2) * amount_ * size * size;
         int tufts = number(here * (0.7f + 0.6f * patch(corner, 7, 11)));
+        const float spread = 0.3f * size;
         while (tufts > 0) {
-            const glm::vec2 middle = within(corner);
+            const glm::vec2 middle = within(corner, size);
             const std::uint32_t stem = add_stem(middle, stem_length, 0.0015f, 0.04f);
-            for (int i = 0; i < 4 && tufts > 0; ++i, --tufts) {
-                const glm::vec2 aside(random_.between(-0.3f, 0.3f), random_.between(-0.3f, 0.3f));
-                add_tuft(middle + aside, stem);
+            for (int i = 0; i < shared && tufts > 0; ++i, --tufts) {
+                const float aside = random_.between(-spread, spread);
+                add_tuft(middle + glm::vec2(aside, random_.between(-spread, spread)), stem);
             }
         }
-        const float daisies = patch(corner, 9, 21) * patch(corner, 26, 22);
-        const float buttercups = patch(corner, 7, 31) * patch(corner, 31, 32);
-        add_flowers(corner, here, daisies, 1);
-        add_flowers(corner, here, buttercups, 2);
+        const float daisies = patch(corner, 8, 21) * patch(corner, 23, 22);
+        const float buttercups = patch(corner, 6, 31) * patch(corner, 27, 32);
+        add_flowers(corner, size, here, 1.15f * daisies, 2);
+        add_flowers(corner, size, here, buttercups, 3);
     }
 
-    void add_flowers(glm::vec2 corner, float here, float share, std::size_t kind) {
-        const float part = std::max(0.0f, share - 0.22f);
-        for (int n = number(1.3f * here * part); n > 0; --n) {
-            const glm::vec2 place = within(corner);
+    void add_flowers(glm::vec2 corner, float size, float here, float share, std::size_t kind) {
+        const float part = std::max(0.0f, share - 0.17f);
+        for (int n = number(2.2f * here * part); n > 0; --n) {
+            const glm::vec2 place = within(corner, size);
             const float tall = random_.between(0.42f, 0.62f);
             add_flower(place, add_stem(place, tall, 0.001f, 0.008f), tall, kind);
         }
@@ -229,8 +257,7 @@ class sower {
     }
 
     void add_tuft(glm::vec2 place, std::uint32_t stem) {
-        const camera usual;
-        const float far = glm::distance(place, glm::vec2(usual.eye.x, usual.eye.z));
+        const float far = distance(place);
         const float lush = 0.65f + 0.7f * patch(place, 5, 1) * (0.5f + patch(place, 19, 2));
         const float length = 0.44f * lush * random_.between(0.75f, 1.2f);
         const float width = (0.34f + std::min(0.5f, 0.006f * far)) * random_.between(0.8f, 1.2f);
@@ -240,11 +267,12 @@ class sower {
                            width, length);
         made.fold = random_.between(0.3f, 0.7f);
         made.carrier = stem;
-        blades[0].push_back(made);
+        const float dry = patch(place, 13, 41) + random_.between(-0.25f, 0.25f);
+        blades[dry > 0.62f ? 1 : 0].push_back(made);
     }
 
     void add_flower(glm::vec2 place, std::uint32_t stem, float tall, std::size_t kind) {
-        const float size = (kind == 1 ? 0.085f : 0.06f) * random_.between(0.8f, 1.2f);
+        const float size = (kind == 2 ? 0.085f : 0.06f) * random_.between(0.8f, 1.2f);
         const glm::vec3 up = glm::normalize(glm::vec3(0, 1, 0) + 0.5f * random_.in_ball());
         const glm::vec3 y = glm::normalize(glm::cross(up, level()));
         const glm::vec3 middle = ground_.on(place.x, place.y) + glm::vec3(0, tall, 0);
@@ -277,12 +305,14 @@ result<grown_grass> grow_grass(float amount, const land& ground, std::uint64_t s
     }
     made.stems = std::move(*stems);
     made.area = std::move(all.area);
-    made.kinds.push_back(
-        {std::move(all.blades[0]), tuft_picture(static_cast<std::uint32_t>(seed + 5))});
-    made.kinds.push_back({std::move(all.blades[1]), flower_picture(13, 0.55f, {0.93f, 0.93f, 0.90f},
-                                                                   {0.86f, 0.68f, 0.16f}, 0.13f)});
-    made.kinds.push_back({std::move(all.blades[2]), flower_picture(5, 0.35f, {0.93f, 0.80f, 0.14f},
-                                                                   {0.80f, 0.66f, 0.12f}, 0.10f)});
+    const auto own = static_cast<std::uint32_t>(seed + 5);
+    const material looks[] = {
+        tuft_picture(lush_grass, own), tuft_picture(dry_grass, own + 1),
+        flower_picture(13, 0.55f, {0.93f, 0.93f, 0.90f}, {0.86f, 0.68f, 0.16f}, 0.13f),
+        flower_picture(5, 0.35f, {0.93f, 0.80f, 0.14f}, {0.80f, 0.66f, 0.12f}, 0.10f)};
+    for (std::size_t kind = 0; kind < all.blades.size(); ++kind) {
+        made.kinds.push_back({std::move(all.blades[kind]), looks[kind]});
+    }
     return made;
 }
 

@@ -31,12 +31,12 @@ struct composed_place {
 /// the hills; taller trees close it on both sides. The sun stands to the left: some trees are
 /// there for their shadows alone.
 constexpr composed_place composition[] = {
-    {oak, 34, -17, 12},     {aspen, 31, 15.5f, 11}, {aspen, 36, 20, 13.5f}, {willow, 58, -13, 13},
-    {tupelo, 74, -24, 20},  {oak, 62, 19, 11},      {aspen, 43, 18, 10},    {oak, 96, 4, 10},
-    {tupelo, 84, 24, 19},   {willow, 80, 13, 12},   {aspen, 92, -20, 15},   {aspen, 97, -15, 14},
-    {tupelo, 104, -30, 21}, {oak, 13, -21, 12},     {aspen, 100, -25, 13},  {oak, 112, -8, 12},
-    {tupelo, 116, 32, 20},  {willow, 110, 18, 13},  {aspen, 122, 8, 14},    {oak, 56, -34, 12},
-    {aspen, 47, 29, 13},    {tupelo, 128, -20, 20}, {aspen, 126, 14, 13},   {oak, 70, 40, 13},
+    {oak, 34, -17, 12},     {aspen, 31, 15.5f, 11}, {aspen, 36, 20, 13.5f}, {willow, 58, -13, 15},
+    {tupelo, 74, -24, 24},  {oak, 62, 19, 12},      {aspen, 43, 18, 10},    {oak, 96, 4, 13},
+    {tupelo, 84, 24, 23},   {willow, 80, 13, 14},   {aspen, 92, -20, 18},   {aspen, 97, -15, 16},
+    {tupelo, 104, -30, 25}, {oak, 13, -21, 12},     {aspen, 100, -25, 17},  {oak, 112, -8, 14},
+    {tupelo, 116, 32, 24},  {willow, 110, 18, 15},  {aspen, 122, 8, 17},    {oak, 56, -34, 13},
+    {aspen, 47, 29, 14},    {tupelo, 128, -20, 25}, {aspen, 126, 14, 16},   {oak, 70, 40, 13},
 };
 
 struct view_axes {
@@ -151,7 +151,7 @@ trees::leaf_options blades_of(std::uint32_t species) {
         break;
     case willow:
         o.per_twig = 0;
-        o.per_metre = 10;
+        o.per_metre = 13;
         o.length = 0.30f;
         o.width = 0.22f;
         o.reach = 3.5f;
