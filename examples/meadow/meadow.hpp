@@ -80,6 +80,11 @@ class meadow {
         }
     }
 
+    /// Makes more room where the last frame's triangles did not fit, as when the camera has come
+    /// near: true if it did; the frame is worth recording again, from stage::mesh on. Waits for the
+    /// device.
+    [[nodiscard]] result<bool> update();
+
     /// RGBA8, description().width × height, on the device.
     [[nodiscard]] const typename B::image& picture() const;
     /// The same on the host, rows from the top.
