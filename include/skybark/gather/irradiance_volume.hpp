@@ -8,9 +8,9 @@
 //
 // Greger, Shirley, Hubbard, Greenberg 1998, "The Irradiance Volume" (IEEE CG&A 18, 2), with the
 // light of a point kept as real spherical harmonics up to l = 1 (Ramamoorthi and Hanrahan 2001):
-// twelve numbers. Each point gathers at two samples, which look up and down, along whole axes: an
-// even sky of radiance L is π L for every normal, however few the axes are, and a half sphere of it
-// is π L (1 + cos a) / 2 at the angle a, as the series has it.
+// twelve numbers. Each point gathers at two samples, which look up and down. However few the axes
+// are, an even sky of radiance L is π L for every normal, and a half sphere of it, above or below,
+// π L (1 + cos a) / 2 at the angle a from it, as the series has it.
 //
 // A distant source's own beam is not in it, as it is not in final_gather::record_directional: it
 // would be a blur of what pictures add sharply by a shadow map. What surfaces pass on of it is.
@@ -84,7 +84,8 @@ class irradiance_volume {
         const auto nz = static_cast<std::int32_t>(points_.z);
         volume_bindings<B, kernels::irradiance_voxels> volumes;
         volumes.write = {&volume_};
-        recorder.map_voxels(kernels::irradiance_voxels{nx, ny}, {view<B>(found_)}, volumes,
+        recorder.map_voxels(kernels::irradiance_voxels{tilt(axes), nx, ny}, {view<B>(found_)},
+                            volumes,
                             glm::uvec3(nx, static_cast<std::int32_t>(coefficients) * ny, nz));
     }
 
@@ -125,6 +126,19 @@ class irradiance_volume {
                         .append(std::to_string(most) + " points along each axis, up to ")
                         .append(std::to_string(most / coefficients))
                         .append(" of them along y, and a box with finite sides above 0."));
+    }
+
+    /// By how much more than evenly the axes lean, as kernels::irradiance_voxels takes it.
+    [[nodiscard]] glm::vec4 tilt(std::uint64_t axes) const {
+        const bundle_axes directions(gather_.options().seed);
+        glm::dvec3 sum(0);
+        for (std::uint64_t i = 0; i < axes; ++i) {
+            const glm::dvec3 axis = directions[i];
+            sum += axis.y >= 0 ? axis : -axis;
+        }
+        const glm::dvec3 mean = sum / static_cast<double>(std::max<std::uint64_t>(axes, 1));
+        const double root = 1.7320508075688772;
+        return glm::vec4(0, root * (mean.y - 0.5), root * mean.z, root * mean.x);
     }
 
     /// Of each point, x first, one that looks up and one that looks down.

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 33ed8ab05559fea53575a2b697a2e1bff9a4b0ec2bca594782d0920e748472bd
+// sha256 9cf85518868e3ab8633030adc702461b5ed2fa905c3869cd1971f762691d0b06
 #pragma once
 
 #include <skybark/kernels/irradiance_voxels.hpp>
@@ -10,11 +10,11 @@ namespace skybark::opengl {
 
 template <>
 struct program<kernels::irradiance_voxels> {
-    static constexpr std::string_view voxels_comp = R"glsl(#version 450
+    static constexpr std::string_view voxels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 8, local_size_y = 8) in;
-#define KERNEL_PARAMETERS int points_x; int points_y;
+#define KERNEL_PARAMETERS vec4 tilt; int points_x; int points_y;
 #define KERNEL_TARGETS 1
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
@@ -31,15 +31,15 @@ layout(std140, binding = 0) uniform skybark_block {
 #define SKYBARK_TARGET_BINDING 0
 #define SKYBARK_SUMS_BINDING 4
 #endif
-    uvec4 skybark_header;
+uvec4 skybark_header;
 #ifdef KERNEL_PARAMETERS
-    KERNEL_PARAMETERS
+KERNEL_PARAMETERS
 #endif
 };
 struct voxel_slab {
-    ivec2 low;
-    ivec2 high;
-    int slice;
+ivec2 low;
+ivec2 high;
+int slice;
 };
 #ifdef SKYBARK_EXPAND
 vec4 vertex_out[VERTEX_VEC4S];
@@ -63,19 +63,21 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 layout(std430, binding = 0) readonly buffer harmonics_buffer { vec4 harmonics[]; };
 void kernel_voxel(ivec3 at) {
-    int k = at.y / points_y;
-    int y = at.y - k * points_y;
-    int point = (at.z * points_y + y) * points_x + at.x;
-    int above = 6 * point + k / 4;
-    vec4 all = harmonics[above] + harmonics[above + 3];
-    imageStore(kernel_targets[0], at, vec4(all[k % 4]));
+int k = at.y / points_y;
+int y = at.y - k * points_y;
+int point = (at.z * points_y + y) * points_x + at.x;
+int at_above = 6 * point + k / 4;
+vec4 above = harmonics[at_above];
+vec4 below = harmonics[at_above + 3];
+precise vec4 all = (above + below) - tilt * (above.x - below.x);
+imageStore(kernel_targets[0], at, vec4(all[k % 4]));
 }
 void main() {
-    if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
-        kernel_voxel(ivec3(gl_GlobalInvocationID));
-    }
+if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
+kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
-)glsl";
+}
+)glsl", 2227};
 };
 
 } // namespace skybark::opengl
