@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <dlfcn.h>
+#include <vector>
 
 namespace {
 
