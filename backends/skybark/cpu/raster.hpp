@@ -21,7 +21,9 @@ namespace skybark::cpu {
 
 /// A triangle on the screen, ready to be covered.
 struct screen_triangle {
-    std::int64_t x[3], y[3]; ///< 1/256 pixel, y down, clockwise as seen
+    std::int32_t row_first, row_end; ///< of the picture, whose pixel centres may be covered
+    std::int32_t column_first, column_end;
+    std::int32_t x[3], y[3]; ///< 1/256 pixel, y down, clockwise as seen
     float z[3];              ///< depth
     float inverse_w[3];
     glm::vec3 weights[3];    ///< where each corner lies in the triangle that was clipped
@@ -33,8 +35,8 @@ struct screen_triangle {
 /// Neighbouring triangles of a draw, and the rows that they touch, so that bands skip them at once.
 struct screen_piece {
     detail::kept_list<screen_triangle> triangles;
-    std::int64_t y_least = 0; ///< 1/256 pixel
-    std::int64_t y_most = 0;
+    std::int32_t row_first = 0;
+    std::int32_t row_end = 0;
 };
 
 /// Memory that draws use again.
@@ -50,9 +52,10 @@ namespace raster {
 inline constexpr std::int64_t subpixels = 256;
 inline constexpr std::uint32_t batch_triangles = 1u << 16;
 inline constexpr std::uint32_t piece_triangles = 512;
-inline constexpr std::uint32_t band_rows = 32;
-/// Clip-space x and y may reach this times w before they are clipped: edge functions of images up
-/// to 2^15 pixels then stay below 2^58.
+inline constexpr std::uint32_t band_rows = 32;     ///< at least
+inline constexpr std::uint32_t bands_a_worker = 8; ///< enough to share out what costs most
+/// Clip-space x and y may reach this times w before they are clipped: for images up to 2^15 pixels
+/// positions then stay below 2^27, and edge functions below 2^58.
 inline constexpr float guard_band = 16.0f;
 
 struct corner {
@@ -130,6 +133,16 @@ struct viewport {
     std::uint32_t height;
 };
 
+/// The first row (or column) whose pixels' centres lie at or beyond a place in 1/256 pixel, and the
+/// one after the last whose centres lie at or before it.
+[[nodiscard]] constexpr std::int32_t first_centre(std::int32_t place) { return (place + 127) >> 8; }
+[[nodiscard]] constexpr std::int32_t end_centre(std::int32_t place) { return (place + 128) >> 8; }
+
+[[nodiscard]] inline std::int64_t twice_area(const screen_triangle& t) {
+    return std::int64_t{t.x[1] - t.x[0]} * (t.y[2] - t.y[0]) -
+           std::int64_t{t.x[2] - t.x[0]} * (t.y[1] - t.y[0]);
+}
+
 /// Projects three corners and keeps the triangle if it covers anything.
 inline void project(const corner* c0, const corner* c1, const corner* c2,
                     const std::uint32_t (&vertex)[3], viewport size, cull_mode cull, bool clipped,
@@ -137,7 +150,7 @@ inline void project(const corner* c0, const corner* c1, const corner* c2,
     screen_triangle t;
     const corner* corners[3] = {c0, c1, c2};
     const auto fixed = [](float pixels) {
-        return static_cast<std::int64_t>(std::lrint(pixels * static_cast<float>(subpixels)));
+        return static_cast<std::int32_t>(std::lrint(pixels * static_cast<float>(subpixels)));
     };
     for (int i = 0; i < 3; ++i) {
         const glm::vec4& p = corners[i]->position;
@@ -156,8 +169,17 @@ inline void project(const corner* c0, const corner* c1, const corner* c2,
         t.weights[i] = corners[i]->weights;
         t.vertex[i] = vertex[i];
     }
-    const std::int64_t area =
-        (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
+    // Most triangles of a meadow are smaller than a pixel, and lie between the centres.
+    const auto [x_least, x_most] = std::minmax({t.x[0], t.x[1], t.x[2]});
+    const auto [y_least, y_most] = std::minmax({t.y[0], t.y[1], t.y[2]});
+    t.column_first = std::max(0, first_centre(x_least));
+    t.column_end = std::min(static_cast<std::int32_t>(size.width), end_centre(x_most));
+    t.row_first = std::max(0, first_centre(y_least));
+    t.row_end = std::min(static_cast<std::int32_t>(size.height), end_centre(y_most));
+    if (t.column_first >= t.column_end || t.row_first >= t.row_end) {
+        return;
+    }
+    const std::int64_t area = twice_area(t);
     // y points down here, so a positive area is clockwise as drawn with y up: a back face.
     t.front = area < 0;
     t.clipped = clipped;
@@ -175,15 +197,13 @@ inline void project(const corner* c0, const corner* c1, const corner* c2,
             std::swap(t.vertex[1], t.vertex[2]);
         }
     }
-    const std::int64_t most_x = std::max({t.x[0], t.x[1], t.x[2]});
-    const std::int64_t most_y = std::max({t.y[0], t.y[1], t.y[2]});
-    const std::int64_t least_x = std::min({t.x[0], t.x[1], t.x[2]});
-    const std::int64_t least_y = std::min({t.y[0], t.y[1], t.y[2]});
-    if (most_x < 0 || most_y < 0 || least_x > std::int64_t{size.width} * subpixels ||
-        least_y > std::int64_t{size.height} * subpixels) {
-        return;
-    }
     out.push_back(t);
+}
+
+/// Whether all of a triangle lies beyond one of the picture's sides.
+[[nodiscard]] inline bool beside(const glm::vec4& a, const glm::vec4& b, const glm::vec4& c) {
+    return (a.x > a.w && b.x > b.w && c.x > c.w) || (a.x < -a.w && b.x < -b.w && c.x < -c.w) ||
+           (a.y > a.w && b.y > b.w && c.y > c.w) || (a.y < -a.w && b.y < -b.w && c.y < -c.w);
 }
 
 /// Clips a triangle of shaded vertices and keeps what is left of it.
@@ -198,7 +218,7 @@ inline void set_up(const glm::vec4* clip, const std::uint32_t (&vertex)[3], view
     const unsigned outside_a = outside(a);
     const unsigned outside_b = outside(b);
     const unsigned outside_c = outside(c);
-    if ((outside_a & outside_b & outside_c) != 0) {
+    if ((outside_a & outside_b & outside_c) != 0 || beside(a, b, c)) {
         return;
     }
     polygon shape{{{a, {1, 0, 0}}, {b, {0, 1, 0}}, {c, {0, 0, 1}}}, 3};
@@ -221,8 +241,8 @@ struct edge {
     /// Positive inside; `bias` makes a centre on the edge belong to top and left edges only.
     [[nodiscard]] static edge between(const screen_triangle& t, int from, int to,
                                       std::int64_t pixel_x, std::int64_t pixel_y) {
-        const std::int64_t dx = t.x[to] - t.x[from];
-        const std::int64_t dy = t.y[to] - t.y[from];
+        const std::int64_t dx = std::int64_t{t.x[to]} - t.x[from];
+        const std::int64_t dy = std::int64_t{t.y[to]} - t.y[from];
         const std::int64_t px = pixel_x * subpixels + subpixels / 2 - t.x[from];
         const std::int64_t py = pixel_y * subpixels + subpixels / 2 - t.y[from];
         return {dx * py - dy * px, -dy * subpixels, dx * subpixels};
@@ -237,26 +257,19 @@ struct edge {
 /// Calls `pixel(x, y, b)` for each covered pixel of rows [row_first, row_end), b being the
 /// barycentric weights on the screen.
 template <class Pixel>
-void cover(const screen_triangle& t, viewport size, std::int64_t row_first, std::int64_t row_end,
-           Pixel&& pixel) {
-    const auto floor_pixel = [](std::int64_t v) { return v >> 8; };
-    const std::int64_t x_first =
-        std::max<std::int64_t>(0, floor_pixel(std::min({t.x[0], t.x[1], t.x[2]})));
-    const std::int64_t x_end =
-        std::min<std::int64_t>(size.width, floor_pixel(std::max({t.x[0], t.x[1], t.x[2]})) + 1);
-    const std::int64_t y_first =
-        std::max(row_first, floor_pixel(std::min({t.y[0], t.y[1], t.y[2]})));
-    const std::int64_t y_end =
-        std::min(row_end, floor_pixel(std::max({t.y[0], t.y[1], t.y[2]})) + 1);
-    if (x_first >= x_end || y_first >= y_end) {
+void cover(const screen_triangle& t, std::int32_t row_first, std::int32_t row_end,
+           const Pixel& pixel) {
+    const std::int64_t x_first = t.column_first;
+    const std::int64_t x_end = t.column_end;
+    const std::int64_t y_first = std::max(row_first, t.row_first);
+    const std::int64_t y_end = std::min(row_end, t.row_end);
+    if (y_first >= y_end) {
         return;
     }
     edge e[3] = {edge::between(t, 1, 2, x_first, y_first), edge::between(t, 2, 0, x_first, y_first),
                  edge::between(t, 0, 1, x_first, y_first)};
     const std::int64_t bias[3] = {edge::bias(t, 1, 2), edge::bias(t, 2, 0), edge::bias(t, 0, 1)};
-    const std::int64_t area =
-        (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
-    const float inverse_area = 1.0f / static_cast<float>(area);
+    const float inverse_area = 1.0f / static_cast<float>(twice_area(t));
     for (std::int64_t y = y_first; y < y_end; ++y) {
         std::int64_t v0 = e[0].value;
         std::int64_t v1 = e[1].value;
@@ -277,14 +290,17 @@ void cover(const screen_triangle& t, viewport size, std::int64_t row_first, std:
     }
 }
 
+[[nodiscard]] inline glm::vec4 load_bytes(const std::byte* data) {
+    std::uint8_t bytes[4];
+    std::memcpy(bytes, data, sizeof bytes);
+    return glm::vec4(bytes[0], bytes[1], bytes[2], bytes[3]) * (1.0f / 255.0f);
+}
+
 [[nodiscard]] inline glm::vec4 load_pixel(const image& from, std::uint64_t index) {
     const std::byte* data = from.data() + index * bytes_per_pixel(from.description().format);
     switch (from.description().format) {
-    case image_format::rgba8: {
-        std::uint8_t bytes[4];
-        std::memcpy(bytes, data, sizeof bytes);
-        return glm::vec4(bytes[0], bytes[1], bytes[2], bytes[3]) * (1.0f / 255.0f);
-    }
+    case image_format::rgba8:
+        return load_bytes(data);
     case image_format::rgba32f: {
         glm::vec4 value;
         std::memcpy(&value, data, sizeof value);
@@ -337,26 +353,41 @@ class image_reader : public grids {
 
     /// The image at (u, v), 0…1 from its upper left corner, by the binding's filter and wrap.
     [[nodiscard]] glm::vec4 sample(std::uint32_t n, glm::vec2 at) const {
-        const glm::vec2 texels = at * glm::vec2(size(n));
-        if ((*images_)[n].filter == filter_mode::nearest) {
-            return wrapped(n, glm::ivec2(glm::floor(texels)));
+        const auto& bound = (*images_)[n];
+        const image_description what = bound.image->description();
+        const glm::ivec2 s(static_cast<int>(what.width), static_cast<int>(what.height));
+        const glm::vec2 texels = at * glm::vec2(s);
+        const bool repeat = bound.wrap == wrap_mode::repeat;
+        if (bound.filter == filter_mode::nearest) {
+            const glm::ivec2 i(glm::floor(texels));
+            return fetch(n, {wrapped(i.x, s.x, repeat), wrapped(i.y, s.y, repeat)});
         }
         const glm::vec2 corner = glm::floor(texels - 0.5f);
         const glm::vec2 part = texels - 0.5f - corner;
         const glm::ivec2 i(corner);
-        const glm::vec4 upper = glm::mix(wrapped(n, i), wrapped(n, {i.x + 1, i.y}), part.x);
-        const glm::vec4 lower =
-            glm::mix(wrapped(n, {i.x, i.y + 1}), wrapped(n, {i.x + 1, i.y + 1}), part.x);
-        return glm::mix(upper, lower, part.y);
+        const auto left = static_cast<std::size_t>(wrapped(i.x, s.x, repeat));
+        const auto right = static_cast<std::size_t>(wrapped(i.x + 1, s.x, repeat));
+        const auto width = static_cast<std::size_t>(s.x);
+        const std::size_t upper = width * static_cast<std::size_t>(wrapped(i.y, s.y, repeat));
+        const std::size_t lower = width * static_cast<std::size_t>(wrapped(i.y + 1, s.y, repeat));
+        const auto between = [&](const auto& texel) {
+            return glm::mix(glm::mix(texel(upper + left), texel(upper + right), part.x),
+                            glm::mix(texel(lower + left), texel(lower + right), part.x), part.y);
+        };
+        if (what.format == image_format::rgba8) {
+            return between([data = bound.image->data()](std::size_t index) {
+                return raster::load_bytes(data + 4 * index);
+            });
+        }
+        return between([&](std::size_t index) { return raster::load_pixel(*bound.image, index); });
     }
 
   private:
-    [[nodiscard]] glm::vec4 wrapped(std::uint32_t n, glm::ivec2 texel) const {
-        if ((*images_)[n].wrap == wrap_mode::repeat) {
-            const glm::ivec2 s = size(n);
-            texel = (texel % s + s) % s;
+    [[nodiscard]] static int wrapped(int texel, int size, bool repeat) {
+        if (texel >= 0 && texel < size) {
+            return texel;
         }
-        return fetch(n, texel);
+        return repeat ? (texel % size + size) % size : (texel < 0 ? 0 : size - 1);
     }
 
     const Images* images_;
@@ -417,6 +448,9 @@ template <class Device, draw_kernel K, class... Spans>
     const auto vertex_number = [&](std::uint32_t i) {
         return geometry.base_vertex + (indices.empty() ? i : indices[i]);
     };
+    // Each band looks at all triangles: no more of them than the workers need.
+    const std::uint32_t rows =
+        std::max(band_rows, size.height / (bands_a_worker * device.workers()) + 1);
     const image_reader reader(images, volumes);
     glm::vec4* shaded = nullptr; // varyings, vertex by vertex
     float* const depth =
@@ -501,11 +535,11 @@ template <class Device, draw_kernel K, class... Spans>
                 }
                 set_up(clip, vertex, size, state.cull, piece.triangles);
             }
-            piece.y_least = std::numeric_limits<std::int64_t>::max();
-            piece.y_most = std::numeric_limits<std::int64_t>::min();
+            piece.row_first = std::numeric_limits<std::int32_t>::max();
+            piece.row_end = 0;
             for (const screen_triangle& t : piece.triangles) {
-                piece.y_least = std::min({piece.y_least, t.y[0], t.y[1], t.y[2]});
-                piece.y_most = std::max({piece.y_most, t.y[0], t.y[1], t.y[2]});
+                piece.row_first = std::min(piece.row_first, t.row_first);
+                piece.row_end = std::max(piece.row_end, t.row_end);
             }
         });
 
@@ -515,17 +549,18 @@ template <class Device, draw_kernel K, class... Spans>
                 return false;
             }
         }
-        const std::uint32_t bands = (size.height + band_rows - 1) / band_rows;
+        const std::uint32_t bands = (size.height + rows - 1) / rows;
         device.parallel(bands, [&](std::uint32_t band) {
-            const std::int64_t row_first = std::int64_t{band} * band_rows;
-            const std::int64_t row_end = std::min<std::int64_t>(row_first + band_rows, size.height);
+            const auto row_first = static_cast<std::int32_t>(band * rows);
+            const auto row_end =
+                static_cast<std::int32_t>(std::min((band + 1) * rows, size.height));
             for (std::uint32_t p = 0; p < pieces; ++p) {
                 const screen_piece& piece = scratch.pieces[p];
-                if (piece.y_most < row_first * subpixels || piece.y_least > row_end * subpixels) {
+                if (piece.row_end <= row_first || piece.row_first >= row_end) {
                     continue;
                 }
                 for (const screen_triangle& t : piece.triangles) {
-                    cover(t, size, row_first, row_end,
+                    cover(t, row_first, row_end,
                           [&](std::int64_t x, std::int64_t y, const glm::vec3& b) {
                               shade_pixel(t, x, y, b);
                           });
