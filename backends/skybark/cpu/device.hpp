@@ -49,7 +49,7 @@ class device {
     explicit device(device_options options)
         : jobs_(std::move(options.jobs)), limits_(options.limits),
           source_(std::make_unique<detail::memory_source>(
-              detail::memory_source{options.memory, options.hooks})) {
+              detail::memory_source{options.memory, options.hooks, {}})) {
         if (!jobs_) {
             const std::uint32_t threads = options.threads != 0
                                               ? options.threads
@@ -65,6 +65,7 @@ class device {
     }
     [[nodiscard]] device_limits limits() const noexcept { return limits_; }
     [[nodiscard]] device_traffic traffic() const noexcept { return traffic_; }
+    [[nodiscard]] device_usage usage() const noexcept { return source_->usage; }
 
     [[nodiscard]] result<buffer> create_buffer(std::uint64_t bytes) {
         detail::memory memory =
@@ -221,6 +222,11 @@ class device {
             return std::string("The cpu device ") + (made ? "has made " : "could not make ") +
                    what + " of " + std::to_string(bytes) + " bytes.";
         });
+        if (made) {
+            made.get_deleter().usage = &source_->usage;
+            made.get_deleter().size = bytes;
+            source_->usage.add(bytes);
+        }
         return made;
     }
 

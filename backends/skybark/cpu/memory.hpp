@@ -37,8 +37,13 @@ namespace detail {
 struct free_memory {
     memory_hooks hooks = {};
     std::size_t bytes = 0;
+    device_usage* usage = nullptr; ///< of the device, where this counts as an object of it
+    std::uint64_t size = 0;        ///< of the object
 
     void operator()(void* memory) const noexcept {
+        if (usage != nullptr) {
+            usage->remove(size);
+        }
         if (hooks.allocate != nullptr) {
             hooks.free(hooks.user, memory, bytes, memory_alignment);
         } else {
@@ -86,6 +91,7 @@ using memory = std::unique_ptr<void, free_memory>;
 struct memory_source {
     memory_hooks memory;
     skybark::hooks hooks;
+    device_usage usage;
 };
 
 [[nodiscard]] inline std::byte* align_up(void* pointer) {

@@ -19,6 +19,7 @@ class buffer {
     ~buffer() {
         if (owner_ != nullptr) {
             owner_->destroy_buffer(name_);
+            owner_->usage.remove(bytes_);
         }
     }
 

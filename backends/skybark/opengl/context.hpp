@@ -201,6 +201,7 @@ class context {
     std::uint32_t max_buffer_texels = 0; ///< of a buffer texture
     std::uint64_t max_target_bytes = 0;  ///< as described
     device_traffic traffic;
+    device_usage usage;
     shared_objects objects;
     std::string renderer;
     bool watched = false;           ///< patterns have zones or groups

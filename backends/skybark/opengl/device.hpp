@@ -32,6 +32,7 @@ class device {
     [[nodiscard]] std::string device_name() const { return context_->renderer; }
     [[nodiscard]] device_limits limits() const noexcept { return context_->limits; }
     [[nodiscard]] device_traffic traffic() const noexcept { return context_->traffic; }
+    [[nodiscard]] device_usage usage() const noexcept { return context_->usage; }
 
     [[nodiscard]] result<buffer> create_buffer(std::uint64_t bytes);
     [[nodiscard]] result<image> create_image(const image_description& description);
@@ -143,6 +144,7 @@ inline result<buffer> device::create_buffer(std::uint64_t bytes) {
     if (!name) {
         return failure(name.error());
     }
+    context_->usage.add(bytes);
     return buffer(context_.get(), *name, bytes);
 }
 
@@ -165,6 +167,7 @@ inline result<image> device::create_image(const image_description& description) 
     context_->gl.texture_storage_2d(name, 1, detail::format_of(format).internal,
                                     static_cast<int>(width), static_cast<int>(height));
     image made(context_.get(), name, description);
+    context_->usage.add(detail::bytes_of(description));
     if (auto done = context_->check("making " + text); !done) {
         context_->say(log_level::warning, [&] { return done.error().message; });
         return failure(done.error());
@@ -195,6 +198,7 @@ inline result<volume> device::create_volume(const volume_description& descriptio
                                     static_cast<int>(width), static_cast<int>(height),
                                     static_cast<int>(depth));
     volume made(context_.get(), name, description);
+    context_->usage.add(description.size_bytes());
     if (auto done = context_->check("making " + text); !done) {
         context_->say(log_level::warning, [&] { return done.error().message; });
         return failure(done.error());

@@ -7,6 +7,14 @@
 
 namespace skybark::opengl {
 
+namespace detail {
+
+[[nodiscard]] constexpr std::uint64_t bytes_of(const image_description& d) noexcept {
+    return std::uint64_t{d.width} * d.height * bytes_per_pixel(d.format);
+}
+
+} // namespace detail
+
 /// Pixels in the device's memory. Deletes its object unless it was wrapped.
 class image {
   public:
@@ -19,6 +27,7 @@ class image {
     ~image() {
         if (owner_ != nullptr) {
             owner_->destroy_texture(name_);
+            owner_->usage.remove(detail::bytes_of(description_));
         }
     }
 
@@ -60,10 +69,6 @@ struct pixel_format {
         break;
     }
     return {gl::depth_component32f, gl::depth_component, gl::float32};
-}
-
-[[nodiscard]] constexpr std::uint64_t bytes_of(const image_description& d) noexcept {
-    return std::uint64_t{d.width} * d.height * bytes_per_pixel(d.format);
 }
 
 } // namespace detail

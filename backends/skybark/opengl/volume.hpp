@@ -19,6 +19,7 @@ class volume {
     ~volume() {
         if (owner_ != nullptr) {
             owner_->destroy_texture(name_);
+            owner_->usage.remove(description_.size_bytes());
         }
     }
 

@@ -147,6 +147,7 @@ class context {
     device_limits limits;
     VkDeviceSize max_allocation = 0;
     device_traffic traffic;
+    mutable device_usage usage; ///< counted where memory is given back
     /// Bound where a program declares a buffer that a call does not use.
     slice unused;
     bool lost = false;

@@ -103,6 +103,7 @@ class device {
     [[nodiscard]] std::string device_name() const { return shared().properties.deviceName; }
     [[nodiscard]] device_limits limits() const noexcept { return shared().limits; }
     [[nodiscard]] device_traffic traffic() const noexcept { return shared().traffic; }
+    [[nodiscard]] device_usage usage() const noexcept { return shared().usage; }
     [[nodiscard]] const device_description& description() const noexcept {
         return shared().description;
     }

@@ -60,10 +60,23 @@ struct allocation {
     VkDeviceSize offset = 0;
     std::byte* mapped = nullptr; ///< where the host sees it, or null
     void* of_caller = nullptr;   ///< memory_piece::allocation
+    bool counted = false;        ///< as an object of the device, of so many bytes
+    VkDeviceSize size = 0;
 };
 
+/// From now on it counts as an object that a device has made.
+inline void count(const context& c, allocation& a, VkDeviceSize size) {
+    a.counted = true;
+    a.size = size;
+    c.usage.add(size);
+}
+
 inline void release(const context& c, allocation& a) {
+    if (a.counted) {
+        c.usage.remove(a.size);
+    }
     if (a.memory == VK_NULL_HANDLE) {
+        a = {};
         return;
     }
     if (const memory_hooks& h = c.description.memory; h.allocate) {

@@ -147,6 +147,7 @@ inline result<buffer> device::create_buffer(std::uint64_t bytes) {
     if (!memory) {
         return failure(memory.error());
     }
+    detail::count(c, memory->memory, bytes);
     buffer made(c, *memory, bytes);
     if (made.mapped()) {
         std::memset(made.mapped(), 0, memory->size);
@@ -178,6 +179,8 @@ inline result<image> device::create_image(image_description what) {
     if (!made) {
         return made;
     }
+    detail::count(c, made->parts_.memory,
+                  std::uint64_t{what.width} * what.height * bytes_per_pixel(what.format));
     auto done = at_once([&](vulkan::recorder& r) {
         r.image_barrier(made->handle(), aspect_of(what.format), VK_IMAGE_LAYOUT_UNDEFINED,
                         VK_IMAGE_LAYOUT_GENERAL, foreign_access{}, foreign_access{});
@@ -197,6 +200,7 @@ inline result<volume> device::create_volume(volume_description what) {
     parts.foreign.description = what;
     auto done = volume::add_image(c, parts);
     if (done) {
+        detail::count(c, parts.memory, what.size_bytes());
         done = volume::add_view(c, parts);
     }
     volume made(c, parts); // gives back what there is

@@ -57,6 +57,23 @@ struct device_traffic {
     std::uint64_t down = 0;
 };
 
+/// Buffers, images and volumes that a device has made and that are still there, and their bytes; not
+/// what a backend keeps to work in, nor what was wrapped. (No part of the concept: backends may
+/// have it.)
+struct device_usage {
+    std::uint64_t objects = 0;
+    std::uint64_t bytes = 0;
+
+    void add(std::uint64_t size) noexcept {
+        ++objects;
+        bytes += size;
+    }
+    void remove(std::uint64_t size) noexcept {
+        --objects;
+        bytes -= size;
+    }
+};
+
 enum class image_format {
     rgba8,    ///< four unsigned normalised bytes
     rgba32f,  ///< four floats
