@@ -44,6 +44,11 @@ struct contents {
     std::uint64_t light_triangles = 0; ///< that light meets
     std::uint64_t light_patches = 0;   ///< and those that pass it on
     std::uint64_t gather_points = 0;   ///< at which it is gathered for the picture
+    /// Bytes of device memory, where the device says.
+    std::uint64_t stand_bytes = 0; ///< of trees and grass: skeletons, triangles
+    std::uint64_t cloud_bytes = 0;
+    std::uint64_t light_bytes = 0;
+    std::uint64_t picture_bytes = 0;
 };
 
 template <backend B>
