@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Builds and runs a fresh project that takes Skybark in one way, from the snippets of docs/including.md.
 
-    install.py WAY --cmake CMAKE --generator GENERATOR --build BUILD --compiler CXX --version VERSION
+    install.py WAY --cmake CMAKE --generator GENERATOR --compiler CXX --version VERSION
 
 WAY: find_package, pkg_config, fetch_content, add_subdirectory, bare_include, single_header or
-debian_package. BUILD is a configured build folder of this repository. The folders of the fresh
-project, and of what it takes, have spaces in their names. Exits with 77 where a tool is missing.
+debian_package. The folders of the fresh project, and of what it takes, have spaces in their names.
+Exits with 77 where a tool is missing.
 """
 
 import argparse
@@ -23,7 +23,6 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 SAYS = "A trunk of 60 triangles.\n" # three gaps of 2 · 8, and two caps of 6
 WARNINGS = ["-Wall", "-Wextra", "-Werror"]
-HEADERS_ONLY = [f"-DSKYBARK_BUILD_{what}=OFF" for what in ("TESTS", "EXAMPLES", "BENCHMARKS")]
 # What the library is made of; an archive of a release holds more.
 SOURCES = ("CMakeLists.txt", "LICENSE", "README.md", "backends", "cmake", "include", "packaging")
 
@@ -46,13 +45,16 @@ def snippets(language, heading=""):
 
 
 class Project:
-    """A fresh folder with main.cpp in it, `c++` before all in its PATH, and nothing in its home."""
+    """A fresh folder with main.cpp in it, and this repository as `skybark`. Its PATH begins with the
+    cmake and the c++ that were asked for; its home is empty."""
 
     def __init__(self, options, folder):
         self.options = options
         self.folder = folder / "my meadow"
         self.folder.mkdir()
+        self.home = folder / "home"
         self.write("main.cpp", snippets("cpp")[0])
+        (self.folder / "skybark").symlink_to(ROOT)
         tools = folder / "tools"
         tools.mkdir()
         compiler = tools / "c++"
@@ -60,7 +62,7 @@ class Project:
         compiler.chmod(0o755)
         cmake = tools / "cmake"
         cmake.symlink_to(shutil.which(options.cmake))
-        self.environment = dict(os.environ, PATH=f"{tools}:{os.environ['PATH']}", HOME=str(folder),
+        self.environment = dict(os.environ, PATH=f"{tools}:{os.environ['PATH']}", HOME=str(self.home),
                                 CMAKE_GENERATOR=options.generator, CXX=options.compiler,
                                 CXXFLAGS="-O0", CMAKE_BUILD_PARALLEL_LEVEL="1", LC_ALL="C.UTF-8")
         for name in ("CMAKE_PREFIX_PATH", "PKG_CONFIG_PATH", "CPLUS_INCLUDE_PATH", "DESTDIR"):
@@ -93,26 +95,27 @@ class Project:
         self.expect()
 
 
-def install(project, folder):
-    """Installs into a folder, moves that, and gives where it is: nothing may remember where it was."""
-    options = project.options
-    project.run(["cmake", "--install", options.build, "--prefix", str(folder / "first place")])
-    prefix = (folder / "first place").rename(folder / "in stalled")
-    names = [str(ROOT / "include"), str(ROOT / "backends"), options.build, str(folder)]
-    for path in prefix.rglob("*"):
-        if path.is_file() and any(name.encode() in path.read_bytes() for name in names):
+def install(project):
+    """Installs into the home, moves that, and gives where it is: nothing may remember where it was."""
+    first = project.home.with_name("first home")
+    project.run(snippets("sh", "find_package")[0], HOME=str(first))
+    first.rename(project.home)
+    folder = str(project.folder.parent)
+    for path in (project.home / ".local").rglob("*"):
+        if path.is_file() and any(name.encode() in path.read_bytes() for name in (str(ROOT), folder)):
             fail(f"{path} names a folder of the build.")
-    return prefix
+    return project.home / ".local"
 
 
 # ---- The ways --------------------------------------------------------------------------------------
 
 
 def find_package(project, folder):
-    prefix = install(project, folder)
-    here = f"-DCMAKE_PREFIX_PATH={prefix}"
+    here = f"-DCMAKE_PREFIX_PATH={install(project)}"
     lists = snippets("cmake", "find_package")[0]
-    project.build_and_run(lists, here)
+    project.write("CMakeLists.txt", lists)
+    project.run(snippets("sh", "find_package")[1])
+    project.expect()
 
     # Refusals are sentences.
     def refuse(expected, version="0.1", components="cpu", *arguments):
@@ -123,6 +126,7 @@ def find_package(project, folder):
             fail(said, f'It should have said "{expected}".')
 
     refuse('skybark has no component "nonsense"; it has cpu, opengl, vulkan, conformance.', "0.1", "cpu nonsense")
+    refuse("requested version", "0.0")
     refuse("requested version", "0.2")
     refuse("requested version", "1.0")
     nowhere = ["-DCMAKE_DISABLE_FIND_PACKAGE_Vulkan=ON", "-DCMAKE_DISABLE_FIND_PACKAGE_VulkanHeaders=ON"]
@@ -145,7 +149,7 @@ endif()
 def pkg_config(project, folder):
     if not shutil.which("pkg-config"):
         skip("pkg-config isn't installed.")
-    prefix = install(project, folder)
+    prefix = install(project)
     command = snippets("sh", "pkg-config")[0].strip()
     with tempfile.TemporaryDirectory(prefix="skybark-") as plain: # for the snippet as it stands
         shutil.copytree(prefix, f"{plain}/prefix")
@@ -173,7 +177,7 @@ def fetch_content(project, folder):
 
 def add_subdirectory(project, folder):
     (project.folder / "third_party").mkdir()
-    (project.folder / "third_party/skybark").symlink_to(ROOT)
+    (project.folder / "skybark").rename(project.folder / "third_party/skybark")
     project.build_and_run(snippets("cmake", "add_subdirectory")[0])
     targets = project.run(["cmake", "--build", "build", "--target", "help"])
     if re.search(r"skybark_tool|test_|skybark_benchmarks|single_headers", targets):
@@ -181,20 +185,19 @@ def add_subdirectory(project, folder):
 
 
 def bare_include(project, folder):
-    (project.folder / "skybark").symlink_to(ROOT)
     project.run(snippets("sh", "Bare includes")[0])
     project.expect("meadow")
 
 
 def single_header(project, folder):
-    (project.folder / "skybark").symlink_to(ROOT)
-    snippet = snippets("sh", "Single headers")[0]
+    snippet, by_cmake = snippets("sh", "Single headers")
+    project.run(snippets("sh", "find_package")[0])
+    project.run(by_cmake)
     for backend in ("cpu", "opengl", "vulkan"):
         project.run(snippet.replace("cpu", backend))
         header = project.folder / f"skybark_{backend}.hpp"
         text = header.read_text("utf-8")
-        again = project.run([sys.executable, str(ROOT / "cmake/single_header.py"), backend])
-        if again != text:
+        if text != (project.home / f".local/include/{header.name}").read_text("utf-8"):
             fail(f"{header.name} depends on where it is made.")
         if str(ROOT) in text or re.search(r"#\s*include\s*<skybark/", text):
             fail(f"{header.name} names files of this repository.")
@@ -251,10 +254,8 @@ def debian_package(project, folder):
     for tool in ("cpack", "dpkg-deb", "gzip"):
         if not shutil.which(tool):
             skip(f"{tool} isn't installed.")
-    headers = folder / "headers"
-    project.run(["cmake", "-S", str(ROOT), "-B", str(headers), *HEADERS_ONLY])
-    project.run(["cpack", "-G", "DEB", "--config", str(headers / "CPackConfig.cmake"), "-B", str(folder)])
-    package = str(folder / f"{PACKAGE}_{project.options.version}_all.deb")
+    project.run(snippets("sh", "A Debian package")[0])
+    package = str(project.folder / f"headers/{PACKAGE}_{project.options.version}_all.deb")
     check_package(project, package)
     unpacked = folder / "unpacked"
     project.run(["dpkg-deb", "-x", package, str(unpacked)])
@@ -284,11 +285,10 @@ def main():
     ways = (find_package, pkg_config, fetch_content, add_subdirectory, bare_include, single_header,
             debian_package)
     parser.add_argument("way", choices=[way.__name__ for way in ways])
-    for name in ("cmake", "generator", "build", "compiler", "version"):
+    for name in ("cmake", "generator", "compiler", "version"):
         parser.add_argument(f"--{name}", required=True)
     options = parser.parse_args()
     options.compiler = shutil.which(options.compiler) or skip(f"{options.compiler} isn't installed.")
-    options.build = str(Path(options.build).resolve())
     with tempfile.TemporaryDirectory(prefix="skybark install ") as folder:
         globals()[options.way](Project(options, Path(folder)), Path(folder))
 
