@@ -34,7 +34,7 @@ material drawn(glm::vec3 around, float through, ColorAt&& color_at) {
             for (std::uint32_t s = 0; s < samples * samples; ++s) {
                 const float x = (static_cast<float>(column * samples + s % samples) + 0.5f) * step;
                 const float y = (static_cast<float>(row * samples + s / samples) + 0.5f) * step;
-                glm::vec3 color;
+                glm::vec3 color(0);
                 if (color_at(x, y, color)) {
                     sum += color;
                     ++inside;

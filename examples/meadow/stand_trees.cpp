@@ -166,6 +166,10 @@ trees::leaf_options blades_of(std::uint32_t species) {
     return o;
 }
 
+// Pictures have no smaller copies of themselves: as fine as they are seen, and no finer.
+constexpr std::uint32_t bark_texels = 256;
+constexpr std::uint32_t leaf_texels = 96;
+
 material bark_of(std::uint32_t species, float girth, std::uint64_t seed) {
     material made;
     made.as = look::bark;
@@ -191,7 +195,8 @@ material bark_of(std::uint32_t species, float girth, std::uint64_t seed) {
     constexpr float around = 0.5f;
     constexpr float along = 0.7f;
     const trees::bark_texture heights =
-        smooth ? trees::smooth_bark(number) : trees::furrowed_bark(number);
+        smooth ? trees::smooth_bark(number, bark_texels, bark_texels)
+               : trees::furrowed_bark(number, bark_texels, bark_texels);
     made.width = heights.width;
     made.height = heights.height;
     made.texels = trees::normal_map(heights, smooth ? 0.006f : 0.025f, around, along);
@@ -204,7 +209,7 @@ material bark_of(std::uint32_t species, float girth, std::uint64_t seed) {
 material blade_of(std::uint32_t species, trees::leaf_shape shape) {
     constexpr glm::vec3 tints[] = {
         {0.97f, 1.02f, 0.90f}, {1.08f, 1.12f, 0.92f}, {1.02f, 1.06f, 0.98f}, {0.94f, 0.98f, 0.95f}};
-    trees::leaf_picture picture = trees::draw_leaf(shape);
+    trees::leaf_picture picture = trees::draw_leaf(shape, leaf_texels);
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
         if (i % 4 != 3) {
             const float tint = tints[species][static_cast<int>(i % 4)];

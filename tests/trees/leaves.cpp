@@ -412,6 +412,39 @@ TEST(leaves, none_and_chunks) {
     EXPECT_EQ(made.error().code, error_code::out_of_memory);
 }
 
+TEST(leaves, room_grows_to_what_is_seen) {
+    const auto leaves = some_leaves(all_trees()[1].skeleton, 1000);
+    trees::leaf_mesh_options options;
+    options.form = mesh_form::list;
+    for (const std::uint64_t chunk : {std::uint64_t{1} << 30, std::uint64_t{100'000}}) {
+        cpu::device_options limits;
+        limits.limits.max_buffer_bytes = chunk;
+        cpu::device device(limits);
+        const auto create = [&](std::uint64_t room) {
+            options.room = room;
+            auto made = trees::leaf_mesh<cpu::device>::create(device, leaves, options);
+            EXPECT_TRUE(made) << made.error().message;
+            return *std::move(made);
+        };
+        const auto made_by = [&](trees::leaf_mesh<cpu::device>& mesh) {
+            EXPECT_TRUE(run(device, [&](auto& r) { mesh.record(r); }));
+            return *mesh.download(device);
+        };
+        auto full = create(0);
+        EXPECT_EQ(full.triangles(), 6 * leaves.size());
+        const auto wanted = made_by(full);
+        EXPECT_FALSE(*full.grow(device));
+        auto scant = create(1000);
+        EXPECT_GE(scant.triangles(), 1000u);
+        EXPECT_LT(scant.triangles(), 1000u + 100);
+        EXPECT_EQ(made_by(scant).indices.size(), 3 * scant.triangles()); // what fits, whole
+        EXPECT_TRUE(*scant.grow(device));
+        EXPECT_TRUE(same_bits(made_by(scant).vertices, wanted.vertices));
+        EXPECT_FALSE(*scant.grow(device));
+        EXPECT_LE(create(1'000'000).triangles(), 6 * leaves.size());
+    }
+}
+
 TEST(leaves, pictures_have_an_outline_within_the_octagon) {
     using trees::leaf_shape;
     for (const leaf_shape shape :

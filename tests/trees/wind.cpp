@@ -713,6 +713,56 @@ TEST(wind, mean_grows_with_height) {
     }
 }
 
+TEST(wind, changes_go_on_from_the_gusts_that_there_are) {
+    cpu::device device;
+    const auto places = wood(20);
+    trees::kaimal_gusts model = gusts_of(7);
+    model.speed = 8;
+    auto wind = value_of(cpu_wind::create(device, places, model));
+    const double late = 5000; // s: waves of another frequency are elsewhere by then
+    const auto before = air_of(device, wind, late);
+    // All of Kaimal's wind is in proportion to its speed, but for the phases.
+    model.speed = 10;
+    ASSERT_TRUE(wind.change(device, value_of(trees::tabulate(model)), late));
+    const auto after = air_of(device, wind, late);
+    auto anew = value_of(cpu_wind::create(device, places, model));
+    const auto other = air_of(device, anew, late);
+    double jump = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        EXPECT_LT(glm::distance(vec3(after[i]), vec3(before[i]) * 1.25f), 1e-4f);
+        jump = std::max(jump, double{glm::distance(vec3(other[i]), vec3(before[i]) * 1.25f)});
+    }
+    EXPECT_GT(jump, 1) << "it would have jumped";
+    // From there on it is the new model's: its waves take as long as a new field's.
+    const auto later = air_of(device, wind, late + 0.05);
+    double moved = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        moved = std::max(moved, double{glm::distance(vec3(later[i]), vec3(after[i]))});
+    }
+    EXPECT_GT(moved, 0.01);
+    EXPECT_LT(moved, 5);
+}
+
+TEST(wind, changes_that_cannot_be_are_refused) {
+    cpu::device device;
+    trees::kaimal_gusts model = gusts_of(7);
+    auto wind = value_of(cpu_wind::create(device, wood(20), model));
+    const auto before = air_of(device, wind, 3);
+    const auto refused = [&](const trees::gusts& table) {
+        const auto done = wind.change(device, table, 3);
+        ASSERT_FALSE(done);
+        EXPECT_EQ(done.error().code, error_code::bad_input);
+    };
+    refused({});
+    auto table = value_of(trees::tabulate(model));
+    table.profile.exponent = 0.3;
+    refused(table);
+    table = value_of(trees::tabulate(model));
+    table.waves[5].frequency = not_a_number;
+    refused(table);
+    EXPECT_EQ(air_of(device, wind, 3), before) << "and it blows as it did";
+}
+
 TEST(wind, own_tables_blow) {
     cpu::device device;
     trees::gusts table;
