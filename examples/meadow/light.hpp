@@ -21,6 +21,7 @@
 // Radiances in kcd/m² as in scene_record, irradiances in the same units times sr.
 
 #include <meadow/land.hpp>
+#include <meadow/solid_bodies.hpp>
 #include <skybark/gather/bounces.hpp>
 #include <skybark/gather/irradiance_volume.hpp>
 #include <skybark/kernels/light_at_points.hpp>
@@ -116,7 +117,8 @@ class light {
         if (auto done = made.make_scene(device, ground, stand); !done) {
             return failure(done.error());
         }
-        if (auto done = made.make_gathers(device, ground); !done) {
+        const solid_bodies wood(stand.triangles, stand.materials);
+        if (auto done = made.make_gathers(device, ground, wood); !done) {
             return failure(done.error());
         }
         return made;
@@ -197,17 +199,18 @@ class light {
         return {};
     }
 
-    [[nodiscard]] result<void> make_gathers(B& device, const land& ground) {
+    [[nodiscard]] result<void> make_gathers(B& device, const land& ground,
+                                            const solid_bodies& wood) {
         gather::bounce_options bounced;
         bounced.axes = options_.directions;
         bounced.gather.seed = options_.seed;
         bounced.gather.resolver = options_.resolver;
         bounced.gather.sky = [sky = sky_.get()](glm::vec3 to) { return sky->radiance(to); };
         auto bounces = gather::bounced_light<B>::create(device, *scene_, bounced);
-        const auto vertices = inner_vertices(ground);
+        const auto vertices = inner_vertices(ground, wood);
         auto land_gather =
             gather::final_gather<B>::create(device, *scene_, vertices, bounced.gather);
-        auto volume = make_volume(device, ground, bounced.gather);
+        auto volume = make_volume(device, ground, wood, bounced.gather);
         auto land_light = device.create_buffer(vertices.size() * sizeof(glm::vec4));
         auto arriving = device.create_buffer(scene_->patch_count() * sizeof(glm::vec4));
         for (const result<void>& done :
@@ -230,29 +233,33 @@ class light {
     }
 
     /// The land's inner vertices, on the coarser land that light meets: many of them lie below it,
-    /// and would be in the dark.
-    [[nodiscard]] static std::vector<gather_sample> inner_vertices(const land& ground) {
+    /// and would be in the dark. Those that a tree stands on are moved to beside it.
+    [[nodiscard]] static std::vector<gather_sample> inner_vertices(const land& ground,
+                                                                   const solid_bodies& wood) {
         constexpr std::size_t count = std::size_t{land::points} * land::points;
+        constexpr glm::vec3 foot(0, 0.2f, 0); // trees need not reach down to the ground
         std::vector<gather_sample> samples(count);
         const land_mesh mesh = ground.mesh();
         for (std::size_t i = 0; i < count; ++i) {
-            const glm::vec3 at = mesh.vertices[i].position;
+            const glm::vec3 at = wood.outside(mesh.vertices[i].position + foot);
             samples[i].position = {at.x, ground.light_height(at.x, at.z), at.z};
             samples[i].normal = ground.normal(at.x, at.z);
         }
         return samples;
     }
 
-    /// Over the stand, up to its top: points that would lie under the land gather above it.
+    /// Over the stand, up to its top: points that would lie under the land gather above it, those
+    /// in wood beside it.
     [[nodiscard]] result<gather::irradiance_volume<B>>
-    make_volume(B& device, const land& ground, const gather::final_gather_options& like) const {
+    make_volume(B& device, const land& ground, const solid_bodies& wood,
+                const gather::final_gather_options& like) const {
         gather::irradiance_volume_options how;
         how.seed = like.seed;
         how.sky = like.sky;
         how.resolver = like.resolver;
         how.gathered_at = [&](glm::vec3 place) {
             const float least = ground.light_height(place.x, place.z) + options_.above_ground;
-            return glm::vec3(place.x, std::max(place.y, least), place.z);
+            return wood.outside({place.x, std::max(place.y, least), place.z});
         };
         constexpr float half = 0.5f * land::side;
         gather::bounds box;
