@@ -25,6 +25,7 @@ struct meadow<B>::parts {
     sky<B> clouds;
     light<B> lit;
     painter<B> paint;
+    contents has;
     std::vector<drawable<B>> drawn; ///< in their order, as they never change
 
     double seconds = 0; ///< of the frame
@@ -101,6 +102,28 @@ namespace detail {
     return view;
 }
 
+/// Bytes that the device has in use since it was last asked.
+template <backend B>
+class bytes_counter {
+  public:
+    explicit bytes_counter(const B& device) : device_(device), last_(now()) {}
+    [[nodiscard]] std::uint64_t more() {
+        const std::uint64_t before = std::exchange(last_, now());
+        return last_ - before;
+    }
+
+  private:
+    [[nodiscard]] std::uint64_t now() const {
+        if constexpr (requires(const B& d) { d.usage(); }) {
+            return device_.usage().bytes;
+        } else {
+            return 0;
+        }
+    }
+    const B& device_;
+    std::uint64_t last_;
+};
+
 /// Errors: a description that no meadow can be made of.
 [[nodiscard]] inline result<void> check(const description& what, const weather& now,
                                         const camera& from) {
@@ -156,6 +179,8 @@ result<meadow<B>> meadow<B>::create(B& device, const description& what, const we
     if (auto good = detail::check(what, now, from); !good) {
         return failure(good.error());
     }
+    contents has;
+    detail::bytes_counter<B> bytes(device);
     land ground(what.seed);
     const float below = ground.height(from.eye.x, from.eye.z);
     auto growing =
@@ -163,10 +188,12 @@ result<meadow<B>> meadow<B>::create(B& device, const description& what, const we
     if (!growing) {
         return failure(growing.error());
     }
+    has.stand_bytes = bytes.more();
     auto clouds = sky<B>::create(device, what, now);
     if (!clouds) {
         return failure(clouds.error());
     }
+    has.cloud_bytes = bytes.more();
     std::vector<gather_triangle> surfaces;
     if (auto done = growing->describe_light(device, surfaces); !done) {
         return failure(done.error());
@@ -185,12 +212,21 @@ result<meadow<B>> meadow<B>::create(B& device, const description& what, const we
     if (!lit) {
         return failure(lit.error());
     }
+    has.light_bytes = bytes.more();
     const land_mesh mesh = ground.mesh();
     auto paint =
         painter<B>::create(device, what, growing->materials(), mesh.vertices, mesh.indices);
     if (!paint) {
         return failure(paint.error());
     }
+    has.picture_bytes = bytes.more();
+    has.trees = growing->trees();
+    has.segments = growing->segments();
+    has.leaves = growing->leaves();
+    has.particles = clouds->capacity();
+    has.light_triangles = lit->scene().triangle_count();
+    has.light_patches = lit->scene().patch_count();
+    has.gather_points = lit->gather_points();
     auto all = std::unique_ptr<parts>(new parts{device,
                                                 what,
                                                 now,
@@ -200,6 +236,7 @@ result<meadow<B>> meadow<B>::create(B& device, const description& what, const we
                                                 std::move(*clouds),
                                                 std::move(*lit),
                                                 std::move(*paint),
+                                                has,
                                                 {}});
     all->growing.for_each_draw([&](const drawable<B>& one) { all->drawn.push_back(one); });
     return meadow(std::move(all));
@@ -289,16 +326,7 @@ result<std::vector<std::uint8_t>> meadow<B>::download() const {
 
 template <backend B>
 contents meadow<B>::holds() const {
-    const parts& p = *all_;
-    contents has;
-    has.trees = p.growing.trees();
-    has.segments = p.growing.segments();
-    has.leaves = p.growing.leaves();
-    has.particles = p.clouds.capacity();
-    has.light_triangles = p.lit.scene().triangle_count();
-    has.light_patches = p.lit.scene().patch_count();
-    has.gather_points = p.lit.gather_points();
-    return has;
+    return all_->has;
 }
 
 template <backend B>

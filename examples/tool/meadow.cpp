@@ -56,6 +56,10 @@ nlohmann::ordered_json stats_of(const meadow_job& job) {
                        {"gather_points", job.holds.gather_points},
                        {"directions", job.options.what.directions},
                        {"bounces", job.options.what.bounces}};
+    stats["memory"] = {{"stand", job.holds.stand_bytes},
+                       {"clouds", job.holds.cloud_bytes},
+                       {"light", job.holds.light_bytes},
+                       {"picture", job.holds.picture_bytes}};
     return stats;
 }
 
