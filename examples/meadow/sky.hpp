@@ -38,16 +38,17 @@ namespace skybark::meadow {
 template <volume_backend B>
 class sky {
   public:
-    /// Grows the clouds and sends them. The cover of `now` need not be that of any frame. Errors:
-    /// those of the device.
-    [[nodiscard]] static result<sky> create(B& device, const description& what,
-                                            const weather& now) {
+    /// Grows the clouds and sends them. At second 0 of the weather `now` the sun shines on the
+    /// origin, where clouds leave room enough. `field` is what grows; its seed and its clearing are
+    /// those of the others. Errors: those of the device.
+    [[nodiscard]] static result<sky> create(B& device, const description& what, const weather& now,
+                                            sky_field_options field = {}) {
         const auto droplets = clouds::phase_function::mie(10);
         if (!droplets) {
             return failure(droplets.error());
         }
-        sky_field_options field;
         field.seed = what.seed;
+        field.clearing = clearing_for(field, now);
         sky made(make_sky_field(field), *droplets);
         if (auto done = made.prepare(device, what); !done) {
             return failure(done.error());
@@ -142,6 +143,17 @@ class sky {
     sky(sky_field&& field, const clouds::phase_function& phase)
         : field_(std::move(field)), phase_(phase),
           bounds_(clouds::reach_of(field_.particles, field_.middles, field_.box)) {}
+
+    /// Where no cloud is to be, so that the sun is seen from the origin.
+    [[nodiscard]] static glm::dvec3 clearing_for(const sky_field_options& field,
+                                                 const weather& now) {
+        const glm::vec3 to_sun =
+            picture::direction_to_sun(now.sun_azimuth, std::max(now.sun_elevation, 20.0));
+        const float middle = field.base + 0.4f * field.thickness;
+        const glm::dvec3 at = glm::dvec3(to_sun * (middle / std::max(to_sun.y, 0.1f)));
+        const bool finite = std::isfinite(at.x) && std::isfinite(at.z);
+        return finite ? glm::dvec3(at.x, at.z, 0.6 * double{field.width}) : glm::dvec3(0);
+    }
 
     [[nodiscard]] result<void> prepare(B& device, const description& what) {
         const glm::uvec3 voxels(what.cloud_voxels);

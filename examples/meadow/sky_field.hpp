@@ -16,10 +16,11 @@ namespace skybark::meadow {
 struct sky_field_options {
     std::uint64_t seed = 1;
     clouds::drift_box box{{0, 0}, 13000, 5300, 6500}; ///< what they lie in, and go round in
-    float base = 1050;                                ///< m, altitude of the level bases
-    float width = 1700;                               ///< m, across the largest
-    float thickness = 850;                            ///< m, of the largest
-    float extinction = 0.2f;                          ///< 1/m, inside
+    glm::dvec3 clearing{0, 0, 0}; ///< m, x and z, and a radius: clouds keep out while there is room
+    float base = 1050;            ///< m, altitude of the level bases
+    float width = 1700;           ///< m, across the largest
+    float thickness = 850;        ///< m, of the largest
+    float extinction = 0.2f;      ///< 1/m, inside
     std::uint32_t particles_largest = 900; ///< of the largest; others in proportion to their area
     std::uint32_t models = 40;             ///< different clouds; others are these, turned
     float most_cover = 0.8f;
@@ -167,9 +168,9 @@ struct cloud_model {
     clouds::detail::cumulus_random random(options.seed);
     const std::vector<detail::cloud_model> models = detail::cloud_models(random, options);
     detail::repeated_depths depths(options.box);
-    std::vector<glm::dvec3> taken;
+    std::vector<glm::dvec3> taken{options.clearing};
     while (!models.empty() && field.steps.back().cover < options.most_cover &&
-           taken.size() < options.most_clouds) {
+           taken.size() <= options.most_clouds) {
         const detail::cloud_model& model = models[taken.size() % models.size()];
         const glm::dvec2 at =
             detail::place_between(random, taken, model.half, double{options.box.side});
