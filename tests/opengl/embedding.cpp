@@ -26,6 +26,7 @@ struct spy {
     int deepest = 0;
     bool expects_names = true;
     bool reject_shaders = false;
+    bool lose_context = false;
 };
 spy* current = nullptr;
 
@@ -106,6 +107,11 @@ void APIENTRY get_shader(GLuint shader, GLenum what, GLint* value) {
         *value = 0;
     }
 }
+GLenum APIENTRY get_reset_status() {
+    return current->lose_context
+               ? GLenum{GL_GUILTY_CONTEXT_RESET}
+               : real<PFNGLGETGRAPHICSRESETSTATUSPROC>("glGetGraphicsResetStatus")();
+}
 void APIENTRY object_label(GLenum kind, GLuint name, GLsizei length, const char* text) {
     const auto at = current->alive.find({kind, name});
     ASSERT_NE(at, current->alive.end()) << "a name for something else: " << text;
@@ -148,6 +154,7 @@ template <std::size_t... I>
         {"glCreateProgram", as_procedure(&create_program)},
         {"glDeleteProgram", as_procedure(&delete_program)},
         {"glGetShaderiv", as_procedure(&get_shader)},
+        {"glGetGraphicsResetStatus", as_procedure(&get_reset_status)},
         {"glObjectLabel", as_procedure(&object_label)},
         {"glPushDebugGroup", as_procedure(&push_group)},
         {"glPopDebugGroup", as_procedure(&pop_group)}};
@@ -273,6 +280,43 @@ TEST_F(opengl_embedding, a_rejected_program_is_told_and_groups_stay_balanced) {
     EXPECT_EQ(group_depth(), 1);
     spy_.reject_shaders = false;
     EXPECT_TRUE(run(device, [&](auto& r) { all.record(r); }));
+}
+
+TEST_F(opengl_embedding, a_lost_context_is_told_once) {
+    {
+        gpu device = must(gpu::create(watched()));
+        spy_.lose_context = true;
+        for (int twice = 0; twice < 2; ++twice) {
+            const auto refused = device.create_buffer(64);
+            ASSERT_FALSE(refused);
+            EXPECT_EQ(refused.error().code, error_code::device_lost);
+        }
+        EXPECT_EQ(hooks_.count(log_level::error, "is lost"), 1);
+    }
+    EXPECT_EQ(spy_.open, 0);
+}
+
+TEST_F(opengl_embedding, what_is_wrapped_stays_the_callers) {
+    GLuint buffer_name = 0;
+    GLuint flat = 0;
+    GLuint deep = 0;
+    real<PFNGLCREATEBUFFERSPROC>("glCreateBuffers")(1, &buffer_name);
+    real<PFNGLNAMEDBUFFERSTORAGEPROC>("glNamedBufferStorage")(buffer_name, 64, nullptr, 0);
+    const auto create_texture = real<PFNGLCREATETEXTURESPROC>("glCreateTextures");
+    create_texture(GL_TEXTURE_2D, 1, &flat);
+    create_texture(GL_TEXTURE_3D, 1, &deep);
+    {
+        gpu device = must(gpu::create(watched()));
+        const buffer words = device.wrap_buffer(buffer_name, 64);
+        const buffer total = *device.create_buffer(16);
+        const image picture = device.wrap_image(flat, {4, 4, image_format::rgba8});
+        const volume sums = device.wrap_volume(deep, {4, 4, 4, volume_format::int32});
+        ASSERT_TRUE(run(device, [&](auto& r) { r.scan(view<gpu>(words), view<gpu>(total)); }));
+    }
+    // A deletion or a name would have been a failure in the functions in front as well.
+    EXPECT_TRUE(real<PFNGLISBUFFERPROC>("glIsBuffer")(buffer_name));
+    EXPECT_TRUE(real<PFNGLISTEXTUREPROC>("glIsTexture")(flat));
+    EXPECT_TRUE(real<PFNGLISTEXTUREPROC>("glIsTexture")(deep));
 }
 
 // A pop must not take one of the caller's groups away where there was no room for ours.

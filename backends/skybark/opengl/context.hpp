@@ -521,6 +521,7 @@ inline result<gl::handle> context::create_buffer(std::uint64_t bytes, const char
     forget_errors();
     gl::handle buffer = 0;
     gl.create_buffers(1, &buffer);
+    label(gl::object_buffer, buffer, what, bytes);
     gl.named_buffer_storage(buffer, static_cast<std::ptrdiff_t>(allocated), nullptr,
                             gl::dynamic_storage_bit);
     if (auto done = check("making a buffer of " + std::to_string(bytes) + " bytes"); !done) {
@@ -528,7 +529,6 @@ inline result<gl::handle> context::create_buffer(std::uint64_t bytes, const char
         say(log_level::warning, [&] { return done.error().message; });
         return failure(done.error());
     }
-    label(gl::object_buffer, buffer, what, bytes);
     say_made(what, allocated);
     gl.clear_named_buffer_data(buffer, gl::r32ui, gl::red_integer, gl::unsigned_int, nullptr);
     return buffer;

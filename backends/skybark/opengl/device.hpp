@@ -164,6 +164,7 @@ inline result<image> device::create_image(const image_description& description) 
     context_->forget_errors();
     gl::handle name = 0;
     context_->gl.create_textures(gl::texture_2d, 1, &name);
+    context_->label(gl::object_texture, name, "image");
     context_->gl.texture_storage_2d(name, 1, detail::format_of(format).internal,
                                     static_cast<int>(width), static_cast<int>(height));
     image made(context_.get(), name, description);
@@ -172,7 +173,6 @@ inline result<image> device::create_image(const image_description& description) 
         context_->say(log_level::warning, [&] { return done.error().message; });
         return failure(done.error());
     }
-    context_->label(gl::object_texture, name, "image");
     context_->say_made("image", detail::bytes_of(description));
     return made;
 }
@@ -194,6 +194,7 @@ inline result<volume> device::create_volume(const volume_description& descriptio
     context_->forget_errors();
     gl::handle name = 0;
     context_->gl.create_textures(gl::texture_3d, 1, &name);
+    context_->label(gl::object_texture, name, "volume");
     context_->gl.texture_storage_3d(name, 1, detail::format_of(format).internal,
                                     static_cast<int>(width), static_cast<int>(height),
                                     static_cast<int>(depth));
@@ -203,7 +204,6 @@ inline result<volume> device::create_volume(const volume_description& descriptio
         context_->say(log_level::warning, [&] { return done.error().message; });
         return failure(done.error());
     }
-    context_->label(gl::object_texture, name, "volume");
     context_->say_made("volume", description.size_bytes());
     return made;
 }
