@@ -1,7 +1,7 @@
 # Written from the documentation of Conan 2; not run by the tests of this repository.
 #
 # Takes the sources from the checkout that this file lies in:
-#   conan create packaging/conan --build=missing
+#   conan create packaging/conan --build=missing -s compiler.cppstd=20
 
 import re
 from pathlib import Path
@@ -50,24 +50,19 @@ class Skybark(ConanFile):
                  str(Path(self.package_folder) / "include"))
 
     def package_info(self):
-        self.cpp_info.bindirs = []
-        self.cpp_info.libdirs = []
         self.cpp_info.set_property("cmake_file_name", "skybark")
-        self.cpp_info.set_property("pkg_config_name", "skybark")
-
         unix = self.settings.os in ("Linux", "FreeBSD")
-        core = self.cpp_info.components["skybark"]
-        core.set_property("cmake_target_name", "skybark::skybark")
-        core.requires = ["glm::glm", "tl-expected::tl-expected"]
-        self._backend("cpu", ["pthread"] if unix else [])
-        self._backend("opengl", ["dl"] if unix else [])
+        self._component("skybark", ["glm::glm", "tl-expected::tl-expected"])
+        self._component("cpu", ["skybark"], ["pthread"] if unix else [])
+        self._component("opengl", ["skybark"], ["dl"] if unix else [])
         if self.options.with_vulkan:
-            self._backend("vulkan", ["dl"] if unix else [], ["vulkan-headers::vulkanheaders"])
+            self._component("vulkan", ["skybark", "vulkan-headers::vulkanheaders"],
+                            ["dl"] if unix else [])
 
-    def _backend(self, name, system_libs, requires=()):
+    def _component(self, name, requires, system_libs=()):
         component = self.cpp_info.components[name]
         component.set_property("cmake_target_name", f"skybark::{name}")
-        component.requires = ["skybark", *requires]
-        component.system_libs = system_libs
+        component.requires = requires
+        component.system_libs = list(system_libs)
         component.bindirs = []
         component.libdirs = []

@@ -191,13 +191,13 @@ void accumulate_outside(context<B>& c, slab_route by) {
     const glm::ivec3 size{12, 10, 8};
     std::vector<kernels::probe_box> boxes;
     for (int k = 0; k < 3; ++k) {
-        for (const int far : {1, 3, 1000, 1000000}) {
-            for (const glm::ivec2 reach : {glm::ivec2{-far, 0},
-                                           {-far, 1},
-                                           {-far, size[k] + far},
-                                           {size[k], size[k] + far},
-                                           {size[k] - 1, size[k] + far}}) {
-                kernels::probe_box box{{4, 4, 4, 100 * k + far % 7}, {9, 9, 6, 2}};
+        for (const int away : {1, 3, 1000, 1000000}) {
+            for (const glm::ivec2 reach : {glm::ivec2{-away, 0},
+                                           {-away, 1},
+                                           {-away, size[k] + away},
+                                           {size[k], size[k] + away},
+                                           {size[k] - 1, size[k] + away}}) {
+                kernels::probe_box box{{4, 4, 4, 100 * k + away % 7}, {9, 9, 6, 2}};
                 box.low[k] = reach.x;
                 box.high[k] = reach.y;
                 boxes.push_back(box);

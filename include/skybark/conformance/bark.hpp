@@ -103,16 +103,16 @@ void bark_patterns(context<B>& c, padding policy) {
                 const double from = along_y ? saw(0) : saw(x);
                 double rise = corner ? 0 : saw(u) - (saw(0) + from) / 2;
                 rise = in.vertices[3 * i].tangent.w == 0 ? 0 : 0.125 * rise;
-                heights.near(double{v.position.z}, double(i) + rise, 1e-6);
-                heights.near(double{v.position.x}, u, 1e-6);
-                heights.near(double{v.position.y}, double{v.v}, 1e-6);
+                heights.close_to(double{v.position.z}, double(i) + rise, 1e-6);
+                heights.close_to(double{v.position.x}, u, 1e-6);
+                heights.close_to(double{v.position.y}, double{v.v}, 1e-6);
             }
             const glm::dvec3 a(list[at].position), b(list[at + 1].position),
                 d(list[at + 2].position);
             area += glm::cross(b - a, d - a).z / 2;
             at += 3;
         }
-        areas.near(area, x * y / 2, 1e-6);
+        areas.close_to(area, x * y / 2, 1e-6);
         for (std::uint32_t k = 3 * pieces[i]; spare && k < 12; ++k, ++at) {
             const surface_vertex nothing{};
             zeros.same(std::memcmp(&list[at], &nothing, sizeof nothing), 0);
@@ -157,7 +157,7 @@ void bark_twice(context<B>& c) {
     for (const glm::dvec2& side : in.sides) {
         expected += side.x * side.y / 2;
     }
-    areas.near(area, expected, 1e-4);
+    areas.close_to(area, expected, 1e-4);
 }
 
 /// Levels of one pass against as many passes: the same triangles, in the same order.

@@ -89,13 +89,13 @@ class surface_check {
 
     void vertex(const surface_vertex& actual, const reference::vertex& e, double size) {
         for (int k = 0; k < 3; ++k) {
-            positions_.near(double{actual.position[k]}, e.position[k], 1e-5 * size);
-            directions_.near(double{actual.normal[k]}, e.normal[k], 1e-3);
-            directions_.near(double{actual.tangent[k]}, e.tangent[k], 1e-3);
+            positions_.close_to(double{actual.position[k]}, e.position[k], 1e-5 * size);
+            directions_.close_to(double{actual.normal[k]}, e.normal[k], 1e-3);
+            directions_.close_to(double{actual.tangent[k]}, e.tangent[k], 1e-3);
         }
-        directions_.near(double{actual.tangent.w}, e.handedness, 0);
-        texture_.near(actual.u, e.u, 1e-5);
-        texture_.near(actual.v, e.v, 1e-5 * size);
+        directions_.close_to(double{actual.tangent.w}, e.handedness, 0);
+        texture_.close_to(actual.u, e.u, 1e-5);
+        texture_.close_to(actual.v, e.v, 1e-5 * size);
     }
     void spare(const surface_vertex& actual) {
         const surface_vertex zeros{};
@@ -275,7 +275,7 @@ void branch_volume(context<B>& c, padding policy) {
     const double polygon = 9.0 / 2 * std::sin(2 * reference::pi / 9);
     const double expected = polygon * 4 / 3 * (0.25 + 0.125 + 0.0625);
     comparison check = c.compare("volume of a closed branch");
-    check.near(volume, expected, 1e-4);
+    check.close_to(volume, expected, 1e-4);
 }
 
 /// Neighbours share a ring's vertices bit for bit.

@@ -346,8 +346,8 @@ void expect_likely_hits(context<B>& c, const bundle_scene& scene,
         distances.within(double{actual[i].distance}, std::max(found->nearest, 0.0),
                          std::max(found->farthest, 0.0));
         if (found->is_flat) {
-            distances.near(double{actual[i].u}, found->u, found->weight_tolerance);
-            distances.near(double{actual[i].v}, found->v, found->weight_tolerance);
+            distances.close_to(double{actual[i].u}, found->u, found->weight_tolerance);
+            distances.close_to(double{actual[i].v}, found->v, found->weight_tolerance);
         }
     }
     if (known * 100 < scene.samples.size() * certain) {
@@ -670,10 +670,10 @@ void resolve_box_corners(context<B>& c, resolve_route route) {
             if (touched == 2 && left_through == 1) {
                 continue;
             }
-            check.near(double{hits[i].distance}, out, tolerance);
+            check.close_to(double{hits[i].distance}, out, tolerance);
             const bool is_wall = hits[i].surface / 2 < scene.triangles.size();
             const auto wall = static_cast<int>(is_wall ? hits[i].surface / 4 : 0);
-            check.near(is_wall ? left[wall / 2] : no_distance, out, tolerance);
+            check.close_to(is_wall ? left[wall / 2] : no_distance, out, tolerance);
             check.same(is_wall && (ray[wall / 2] > 0) == (wall % 2 == 1) ? hits[i].surface % 2 : 1,
                        0);
         }
@@ -854,9 +854,9 @@ void resolve_beside(context<B>& c, resolve_route route) {
             scene.ask({static_cast<float>(x), static_cast<float>(y), -1}, {0, 0, 1});
         }
     }
-    for (const float far : {15.75f, -15.75f, 100.0f, -100.0f, 1e6f}) {
-        scene.ask({far, 0.5f, -1}, {0, 0, 1});
-        scene.ask({0.5f, far, -1}, {0, 0, 1});
+    for (const float away : {15.75f, -15.75f, 100.0f, -100.0f, 1e6f}) {
+        scene.ask({away, 0.5f, -1}, {0, 0, 1});
+        scene.ask({0.5f, away, -1}, {0, 0, 1});
     }
     resolve_exactly(c, scene, route);
 }
@@ -882,19 +882,19 @@ void resolve_twice_in_one_recorder(context<B>& c, resolve_route route) {
 template <backend B>
 void resolve_interleaved(context<B>& c, resolve_route route) {
     const bundle_scene large = random_scene(c, 700, 150);
-    const bundle_scene small = random_scene(c, 30, 40);
+    const bundle_scene other = random_scene(c, 30, 40);
     resolving<B> a(c, large, route);
-    resolving<B> b(c, small, route);
+    resolving<B> b(c, other, route);
     auto first = c.begin();
     auto second = c.begin();
     a.resolver().record_triangles(first, large.bundle, a.work().triangles);
-    b.resolver().record_triangles(second, small.bundle, b.work().triangles);
+    b.resolver().record_triangles(second, other.bundle, b.work().triangles);
     a.resolver().record_samples(first, large.bundle, a.work());
-    b.resolver().record_samples(second, small.bundle, b.work());
+    b.resolver().record_samples(second, other.bundle, b.work());
     c.submit(second);
     c.submit(first);
     expect_likely_hits(c, large, a.get(), 90);
-    expect_likely_hits(c, small, b.get(), 90);
+    expect_likely_hits(c, other, b.get(), 90);
 }
 
 /// Triangles, alpha, samples and hits are parts of one buffer, with numbers around them.

@@ -132,10 +132,10 @@ void map_feeds_a_draw(context<B>& c) {
     });
     comparison check = c.compare("channels");
     for (const glm::vec4& pixel : read_image(c, first).pixels) {
-        check.near(pixel, p.vectors[0] * 2.0f - 5.0f, 1e-3);
+        check.close_to(pixel, p.vectors[0] * 2.0f - 5.0f, 1e-3);
     }
     for (const glm::vec4& pixel : read_image(c, second).pixels) {
-        check.near(pixel, p.vectors[0] * 2.0f + 95.0f, 1e-3);
+        check.close_to(pixel, p.vectors[0] * 2.0f + 95.0f, 1e-3);
     }
 }
 
@@ -180,7 +180,7 @@ void draw_reads_a_drawn_image(context<B>& c) {
     for (std::uint32_t y = 0; y < 16; ++y) {
         for (std::uint32_t x = 0; x < 16; ++x) {
             check.same(colors.at(x, y), x < 8 ? red : blue);
-            check.near(depths.at(x, y), {x < 8 ? 0.25f : 1.0f, 0, 0, 1}, 1e-6);
+            check.close_to(depths.at(x, y), {x < 8 ? 0.25f : 1.0f, 0, 0, 1}, 1e-6);
             check.same(last.at(x, y), x < 8 ? glm::vec4(0, 0, 0, 1) : green);
         }
     }

@@ -40,16 +40,16 @@ class comparison {
         }
         ++report_.compared;
     }
-    void near(double actual, double expected, double tolerance) {
+    void close_to(double actual, double expected, double tolerance) {
         within(actual, expected - tolerance, expected + tolerance);
     }
-    void near(const glm::vec4& actual, const glm::vec4& expected, double tolerance) {
+    void close_to(const glm::vec4& actual, const glm::vec4& expected, double tolerance) {
         for (int i = 0; i < 4; ++i) {
-            near(double{actual[i]}, double{expected[i]}, tolerance);
+            close_to(double{actual[i]}, double{expected[i]}, tolerance);
         }
     }
     void same(double actual, double expected) { within(actual, expected, expected); }
-    void same(const glm::vec4& actual, const glm::vec4& expected) { near(actual, expected, 0); }
+    void same(const glm::vec4& actual, const glm::vec4& expected) { close_to(actual, expected, 0); }
 
   private:
     void note(const mismatch& m) {
@@ -183,10 +183,12 @@ class context {
     void submit(typename B::recorder& recorder) const { need(device.submit(recorder), "submit"); }
 
     /// A small random integer as a float: sums and products of these are exact.
-    [[nodiscard]] float small() {
+    [[nodiscard]] float small_number() {
         return static_cast<float>(static_cast<int>(random() % 2001) - 1000);
     }
-    [[nodiscard]] glm::vec4 small_vector() { return {small(), small(), small(), small()}; }
+    [[nodiscard]] glm::vec4 small_vector() {
+        return {small_number(), small_number(), small_number(), small_number()};
+    }
     /// 0 … limit − 1.
     [[nodiscard]] std::uint32_t below(std::uint32_t limit) {
         return static_cast<std::uint32_t>(random() % limit);

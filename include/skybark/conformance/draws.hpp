@@ -97,7 +97,7 @@ void draw_clear(context<B>& c, image_format format) {
     e.draw({});
     comparison check = c.compare("channels after a clear");
     for (const glm::vec4& pixel : e.color().pixels) {
-        check.near(pixel, {0.2f, 0.4f, 0.6f, 0.8f}, format == image_format::rgba8 ? 0.003 : 0);
+        check.close_to(pixel, {0.2f, 0.4f, 0.6f, 0.8f}, format == image_format::rgba8 ? 0.003 : 0);
     }
     for (const glm::vec4& pixel : e.depth().pixels) {
         check.same(pixel.x, 0.625);
@@ -216,7 +216,7 @@ void draw_shared_edges(context<B>& c, double jitter) {
     e.draw(corners);
     comparison check = c.compare("times that a pixel is covered");
     for (const glm::vec4& pixel : e.color().pixels) {
-        check.near(pixel.x, 1, 1e-5);
+        check.close_to(pixel.x, 1, 1e-5);
     }
 }
 
@@ -234,8 +234,8 @@ void draw_depth_order(context<B>& c) {
     const double tolerance = 0.003;
     for (std::uint32_t y = 0; y < 24; ++y) {
         for (std::uint32_t x = 0; x < 24; ++x) {
-            check.near(seen.at(x, y), x < 8 ? red : x < 16 ? blue : grey, tolerance);
-            check.near(depth.at(x, y).x, x >= 8 && x < 16 ? 0.25 : 0.5, 1e-6);
+            check.close_to(seen.at(x, y), x < 8 ? red : x < 16 ? blue : grey, tolerance);
+            check.close_to(depth.at(x, y).x, x >= 8 && x < 16 ? 0.25 : 0.5, 1e-6);
         }
     }
 }
@@ -287,7 +287,7 @@ void draw_depth_plane(context<B>& c, bool depth_only) {
         for (std::uint32_t x = 0; x < 32; ++x) {
             const double clip_x = (x + 0.5) / 16 - 1;
             const double clip_y = 1 - (y + 0.5) / 16;
-            check.near(depth.at(x, y).x, 0.5 + clip_x / 4 + clip_y / 8, 1e-6);
+            check.close_to(depth.at(x, y).x, 0.5 + clip_x / 4 + clip_y / 8, 1e-6);
         }
     }
 }
@@ -372,7 +372,7 @@ void draw_perspective(context<B>& c) {
         for (std::uint32_t x = 0; x < 32; ++x) {
             const double t = (x + 0.5) / 32;
             const auto s = static_cast<float>((t / 8) / ((1 - t) + t / 8));
-            check.near(seen.at(x, y), {s, 1 - s, s, 1}, 1e-3);
+            check.close_to(seen.at(x, y), {s, 1 - s, s, 1}, 1e-3);
         }
     }
 }
@@ -395,7 +395,7 @@ void draw_blending(context<B>& c, image_format format) {
     comparison check = c.compare("channels");
     for (const glm::vec4& pixel : e.color().pixels) {
         for (int k = 0; k < 4; ++k) {
-            check.near(double{pixel[k]}, expected[k], tolerance);
+            check.close_to(double{pixel[k]}, expected[k], tolerance);
         }
     }
 }
@@ -409,7 +409,7 @@ void draw_blending_one_layer(context<B>& c) {
     e.draw(rectangle(e.what(), 0, 0, 16, 16, 0.5, {0.1f, 0.2f, 0, 0.25f}));
     comparison check = c.compare("channels");
     for (const glm::vec4& pixel : e.color().pixels) {
-        check.near(pixel, {0.25f, 0.5f, 0.45f, 1}, 1.001 / 255);
+        check.close_to(pixel, {0.25f, 0.5f, 0.45f, 1}, 1.001 / 255);
     }
 }
 
@@ -428,7 +428,7 @@ void draw_discard(context<B>& c) {
     for (std::uint32_t y = 0; y < 8; ++y) {
         for (std::uint32_t x = 0; x < 32; ++x) {
             check.same(seen.at(x, y).x, x >= 16 ? 1 : 0);
-            check.near(depth.at(x, y).x, x >= 16 ? 0.25 : 1, 1e-6);
+            check.close_to(depth.at(x, y).x, x >= 16 ? 0.25 : 1, 1e-6);
         }
     }
 }
@@ -440,7 +440,7 @@ void draw_fragment_buffer(context<B>& c) {
     e.draw(rectangle(e.what(), 0, 0, 8, 8, 0.5, {0.5f, 0.25f, 3, 1}));
     comparison check = c.compare("channels");
     for (const glm::vec4& pixel : e.color().pixels) {
-        check.near(pixel, {0.25f, 0.5f, 3, 1}, 1e-6);
+        check.close_to(pixel, {0.25f, 0.5f, 3, 1}, 1e-6);
     }
 }
 
@@ -455,8 +455,8 @@ void draw_values(context<B>& c, image_format format) {
             for (int k = 0; k < 4; ++k) {
                 const double unit = std::fmin(1, std::fmax(0, double{value[k]}));
                 const bool bytes = format == image_format::rgba8;
-                check.near(double{pixel[k]}, bytes ? unit : double{value[k]},
-                           bytes ? 0.6 / 255 : 1e-4);
+                check.close_to(double{pixel[k]}, bytes ? unit : double{value[k]},
+                               bytes ? 0.6 / 255 : 1e-4);
             }
         }
     }
@@ -493,7 +493,7 @@ void draw_order(context<B>& c) {
     e.draw(all);
     comparison check = c.compare("red");
     for (const glm::vec4& pixel : e.color().pixels) {
-        check.near(pixel.x, 999, 1e-3);
+        check.close_to(pixel.x, 999, 1e-3);
     }
 }
 
@@ -515,7 +515,8 @@ void draw_many(context<B>& c) {
     comparison check = c.compare("channels");
     for (std::uint32_t y = 0; y < 256; ++y) {
         for (std::uint32_t x = 0; x < 320; ++x) {
-            check.near(seen.at(x, y), {static_cast<float>(x), static_cast<float>(y), 0, 1}, 1e-3);
+            check.close_to(seen.at(x, y), {static_cast<float>(x), static_cast<float>(y), 0, 1},
+                           1e-3);
         }
     }
 }
@@ -539,7 +540,7 @@ void expect_cells(const context<B>& c, const picture& seen, std::uint32_t first,
     for (std::uint32_t y = 0; y < 16; ++y) {
         for (std::uint32_t x = 0; x < 16; ++x) {
             const std::uint32_t n = y / 2 * 8 + x / 2;
-            check.near(seen.at(x, y).x, n - first < count ? n + 1 : 0, 1e-4);
+            check.close_to(seen.at(x, y).x, n - first < count ? n + 1 : 0, 1e-4);
         }
     }
 }

@@ -35,7 +35,7 @@ template <volume_backend B>
     std::vector<float> floats;
     std::vector<std::uint16_t> halves;
     for (double& number : numbers) {
-        number = double{c.small()};
+        number = double{c.small_number()};
         floats.push_back(static_cast<float>(number));
         halves.push_back(nearest_float16(number));
     }

@@ -69,7 +69,7 @@ template <backend B>
         glm::vec4 pixel{0, 0, 0, 1};
         for (int k = 0; k < (what.format == image_format::depth32f ? 1 : 4); ++k) {
             pixel[k] = what.format == image_format::rgba32f
-                           ? c.small()
+                           ? c.small_number()
                            : static_cast<float>(c.below(256) / 255.0);
         }
         p.pixels.push_back(pixel);
@@ -170,7 +170,7 @@ void image_fetch(context<B>& c, image_format format, bool second) {
     comparison check = c.compare("channels of fetched texels");
     for (std::uint32_t y = 0; y < what.height; ++y) {
         for (std::uint32_t x = 0; x < what.width; ++x) {
-            check.near(seen.at(x, y), p.at(x + 5, y + 3), 1e-6);
+            check.close_to(seen.at(x, y), p.at(x + 5, y + 3), 1e-6);
         }
     }
 }
@@ -244,7 +244,7 @@ void image_sample(context<B>& c, image_format format, filter_mode filter, wrap_m
             const double v = -1 + offset + 3 * (y + 0.5) / what.height;
             const glm::dvec4 expected = sampled(p, u, v, filter, wrap);
             for (int k = 0; k < 4; ++k) {
-                check.near(double{seen.at(x, y)[k]}, expected[k], tolerance);
+                check.close_to(double{seen.at(x, y)[k]}, expected[k], tolerance);
             }
         }
     }

@@ -205,7 +205,7 @@ void expect_fragments(const context<B>& c, const std::vector<peel_pixel>& expect
         }
         if (number < expected[i].fragments.size()) {
             const peel_fragment& f = expected[i].fragments[number];
-            check.near(double{seen.depth[i]}, f.depth, f.tolerance);
+            check.close_to(double{seen.depth[i]}, f.depth, f.tolerance);
             check.same(seen.triangle[i], f.triangle);
         } else {
             check.same(double{seen.depth[i]}, 0);
@@ -306,7 +306,7 @@ void peel_equal_depths(context<B>& c) {
         const seen_layer seen = of.next();
         expect_layer(c, of.triangles(), before, seen);
         for (std::size_t i = 0; i < size.pixels(); ++i) {
-            check.near(double{seen.depth[i]}, z, z == 0 ? 0 : 2e-6);
+            check.close_to(double{seen.depth[i]}, z, z == 0 ? 0 : 2e-6);
             if (z != 0) {
                 const bool is_near = seen.triangle[i] == 1 || seen.triangle[i] == 4;
                 check.same(is_near ? 0.25 : 0.75, z);
@@ -452,7 +452,7 @@ void peel_shared_edges(context<B>& c, bool on_centres) {
     const seen_layer seen = of.next();
     comparison check = c.compare("depths of a picture without holes");
     for (const float depth : seen.depth) {
-        check.near(double{depth}, 0.5, 2e-6);
+        check.close_to(double{depth}, 0.5, 2e-6);
     }
     expect_layer(c, of.triangles(), std::vector<float>(size.pixels(), 1.0f), seen);
 }
@@ -524,7 +524,7 @@ void peel_twice_in_one_recorder(context<B>& c) {
         const seen_layer seen = of.get();
         comparison depths = c.compare("depths of the last layer of a stream");
         for (const float depth : seen.depth) {
-            depths.near(double{depth}, z, 2e-6);
+            depths.close_to(double{depth}, z, 2e-6);
         }
         comparison counts = c.compare("count of the last layer of a stream");
         counts.same(seen.count.written, static_cast<double>(size.pixels()));
@@ -547,15 +547,15 @@ void peel_twice_in_one_recorder(context<B>& c) {
 /// Two recorders turn by turn, with pictures of different sizes.
 template <backend B>
 void peel_interleaved(context<B>& c) {
-    const layer_size small{7, 5};
+    const layer_size other{7, 5};
     const layer_size large{33, 41};
     corner_list corners;
     corner_list others;
     for (const double z : {0.625, 0.25, 0.875}) {
-        add_plane(corners, small, 0, 0, 7, 5, z);
+        add_plane(corners, other, 0, 0, 7, 5, z);
         add_plane(others, large, 0, 0, 33, 41, z / 2);
     }
-    const peeling<B> a(c, corners, small);
+    const peeling<B> a(c, corners, other);
     const peeling<B> b(c, others, large);
     auto first = c.begin();
     auto second = c.begin();
@@ -568,10 +568,10 @@ void peel_interleaved(context<B>& c) {
     c.submit(first);
     comparison check = c.compare("depths of two recorders");
     for (const float depth : a.get().depth) {
-        check.near(double{depth}, 0.625, 2e-6);
+        check.close_to(double{depth}, 0.625, 2e-6);
     }
     for (const float depth : b.get().depth) {
-        check.near(double{depth}, 0.125, 2e-6);
+        check.close_to(double{depth}, 0.125, 2e-6);
     }
 }
 
@@ -603,7 +603,7 @@ void peel_in_views(context<B>& c) {
         const std::size_t part = i / (stride / 4);
         const std::size_t word = i % (stride / 4);
         if (part == 0 && word < pixels) {
-            check.near(double{std::bit_cast<float>(seen[i])}, 0.5, 2e-6);
+            check.close_to(double{std::bit_cast<float>(seen[i])}, 0.5, 2e-6);
         } else if (part == 1 && word < pixels) {
             check.within(seen[i], 0, 1);
         } else if (part == 2 && word < 2) {

@@ -87,13 +87,13 @@ class leaf_check {
 
     void vertex(const surface_vertex& actual, const reference::leaf_corner& e) {
         for (int k = 0; k < 3; ++k) {
-            positions_.near(double{actual.position[k]}, e.position[k], 1e-4);
-            directions_.near(double{actual.normal[k]}, e.normal[k], 1e-5);
-            directions_.near(double{actual.tangent[k]}, e.tangent[k], 1e-5);
+            positions_.close_to(double{actual.position[k]}, e.position[k], 1e-4);
+            directions_.close_to(double{actual.normal[k]}, e.normal[k], 1e-5);
+            directions_.close_to(double{actual.tangent[k]}, e.tangent[k], 1e-5);
         }
-        directions_.near(double{actual.tangent.w}, 1, 0);
-        texture_.near(double{actual.u}, e.u, 1e-5);
-        texture_.near(double{actual.v}, e.v, 1e-5);
+        directions_.close_to(double{actual.tangent.w}, 1, 0);
+        texture_.close_to(double{actual.u}, e.u, 1e-5);
+        texture_.close_to(double{actual.v}, e.v, 1e-5);
     }
     void spare(const surface_vertex& actual) {
         const surface_vertex zeros{};

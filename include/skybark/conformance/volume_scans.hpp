@@ -145,7 +145,7 @@ void scan_float_order(context<B>& c, scan_axis axis, scan_direction direction) {
     const glm::ivec3 size{40, 33, 70};
     std::vector<float> own(voxels_of(size));
     for (float& voxel : own) {
-        voxel = std::ldexp(c.small() + 0.25f, static_cast<int>(c.below(24)) - 12);
+        voxel = std::ldexp(c.small_number() + 0.25f, static_cast<int>(c.below(24)) - 12);
     }
     const auto in = put_volume(c, size, volume_format::float32, own);
     for (const scan_share share : {scan_share::whole, scan_share::half, scan_share::none}) {
@@ -200,7 +200,7 @@ void scan_large_sums(context<B>& c, volume_format to) {
         const double rounding = to == volume_format::int32 ? 0 : 0x1p31 * scale * 0x1p-22;
         comparison check = c.compare(std::string("large sums as ") + name_of(to));
         for (std::size_t i = 0; i < expected.size(); ++i) {
-            check.near(actual[i], static_cast<double>(expected[i]) / 2 * scale, rounding);
+            check.close_to(actual[i], static_cast<double>(expected[i]) / 2 * scale, rounding);
         }
     }
 }
