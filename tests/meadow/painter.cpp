@@ -118,7 +118,8 @@ class stage {
         scene.sky.sunlight = vec4(now.sunlight, 0);
         const kernels::surroundings_record around = light(now);
         const auto done = run(*device_, [&](typename B::recorder& r) {
-            painter_.record(r, scene, around, all, {&*clouds_, &*gathered_, view<B>(*land_)},
+            painter_.record(r, scene, around, all,
+                            {now.shadow > 0 ? &*clouds_ : nullptr, &*gathered_, view<B>(*land_)},
                             [](auto&, const auto&, const auto&) {});
         });
         EXPECT_TRUE(done) << done.error().message;
