@@ -34,6 +34,12 @@ meadow::sky_field_options coarse() {
     few.most_cover = 0.6f;
     return few;
 }
+/// The real clouds, up to a usual cover.
+meadow::sky_field_options usual() {
+    meadow::sky_field_options half;
+    half.most_cover = 0.42f;
+    return half;
+}
 weather covered(float cloud) {
     weather now;
     now.cloud = cloud;
@@ -129,7 +135,7 @@ TEST(sky, leaves_the_origin_in_the_sun_at_first) {
     for (const std::uint64_t seed : {1u, 2u}) {
         description what = small();
         what.seed = seed;
-        auto made = meadow::sky<cpu::device>::create(device, what, weather{});
+        auto made = meadow::sky<cpu::device>::create(device, what, weather{}, usual());
         ASSERT_TRUE(made);
         // The oracle: how much of the particles lies on the line to the sun.
         const double azimuth = weather{}.sun_azimuth * std::numbers::pi / 180;
@@ -192,7 +198,7 @@ TEST(sky, casts_shadows_that_move_with_the_wind_aloft) {
     weather now;
     now.wind = 7.5f;
     now.wind_from = 250;
-    auto made = meadow::sky<cpu::device>::create(device, what, now);
+    auto made = meadow::sky<cpu::device>::create(device, what, now, usual());
     ASSERT_TRUE(made);
     const auto shadow_at = [&](double seconds) {
         EXPECT_TRUE(run(device, [&](auto& to) { made->record(to, now, seconds); }));
