@@ -150,7 +150,7 @@ def pkg_config(project, folder):
     if not shutil.which("pkg-config"):
         skip("pkg-config isn't installed.")
     prefix = install(project)
-    command = snippets("sh", "pkg-config")[0].strip()
+    command, with_spaces = snippets("sh", "pkg-config")
     with tempfile.TemporaryDirectory(prefix="skybark-") as plain: # for the snippet as it stands
         shutil.copytree(prefix, f"{plain}/prefix")
         path = {"PKG_CONFIG_PATH": f"{plain}/prefix/share/pkgconfig"}
@@ -159,9 +159,9 @@ def pkg_config(project, folder):
             fail("pkg-config knows another version.")
     project.expect("meadow")
 
-    # And as docs/including.md says for paths with spaces, with less to compile.
+    # The one for paths with spaces, with less to compile.
     project.write("main.cpp", '#include <skybark/core/result.hpp>\nint main() {}\n')
-    project.run(f'eval "{command}"', PKG_CONFIG_PATH=str(prefix / "share/pkgconfig"))
+    project.run(with_spaces, PKG_CONFIG_PATH=str(prefix / "share/pkgconfig"))
     project.expect("meadow", "")
 
 
@@ -182,6 +182,9 @@ def add_subdirectory(project, folder):
     targets = project.run(["cmake", "--build", "build", "--target", "help"])
     if re.search(r"skybark_tool|test_|skybark_benchmarks|single_headers", targets):
         fail(targets, "As a part of another project it builds programs of its own.")
+    project.run(["cmake", "--install", "build", "--prefix", str(project.home)])
+    if project.home.exists():
+        fail("As a part of another project it installs itself.")
 
 
 def bare_include(project, folder):
