@@ -217,28 +217,34 @@ TEST_P(meadow_light, over_land_comes_from_the_ground_as_well) {
     });
 }
 
-/// Clouds of optical depth 1.2 everywhere above take e^−1.2 of the sun out of what the ground
-/// reflects, not of the sky.
+/// Clouds of optical depth 1.2 above the western half of the land leave e^−1.2 of the sun to what
+/// the ground reflects there, and all of the sky.
 TEST_P(meadow_light, is_shaded_by_clouds) {
     support::with_device(GetParam(), [](auto& device) {
         using B = std::remove_reference_t<decltype(device)>;
-        const std::vector<float> depth(4 * 4 * 4, 1.2f);
+        std::vector<float> depth(4 * 4 * 4);
+        for (std::size_t i = 0; i < depth.size(); ++i) {
+            depth[i] = i % 4 < 2 ? 1.2f : 0.0f;
+        }
         auto volume = device.create_volume({4, 4, 4, volume_format::float32});
         ASSERT_TRUE(volume);
         ASSERT_TRUE(device.upload(*volume, std::as_bytes(std::span(depth))));
         meadow::sun_shade<B> clouds;
         clouds.attenuation = &*volume;
-        clouds.grid.anchor = vec4(0, 1000, 0, 0); // 4 × 4 × 4 voxels of 500 m around it
-        clouds.grid.row_x = vec4(0.002f, 0, 0, 2);
+        clouds.grid.anchor = vec4(0, 1000, 0, 0); // 4 × 4 × 4 voxels of 40 and 500 m around it
+        clouds.grid.row_x = vec4(0.025f, 0, 0, 2);
         clouds.grid.row_y = vec4(0, 0.002f, 0, 2);
         clouds.grid.row_z = vec4(0, 0, 0.002f, 2);
-        clouds.grid.voxel = vec4(500, 500, 500, 1);
+        clouds.grid.voxel = vec4(40, 500, 500, 1);
         lit_meadow meadow(device);
         const frame found = meadow.lit(even(), clouds);
         const double sun = std::exp(-1.2) * double{sunlight};
-        // Beyond the land's edge, 2 % of the half space below, there is no shadow.
+        // 2 % of the half space below is the other half of the land, or beyond its edge.
         expect_near(found.at_point({1, 0, 1}, {0, -1, 0}), pi * of_ground(double{bright} + sun),
                     0.06);
+        const frame clear = meadow.lit(even());
+        expect_near(found.at_point({3, 0, 1}, {0, -1, 0}),
+                    dvec3(clear.at_point({3, 0, 1}, {0, -1, 0})), 0.06);
         expect_near(found.at_point({1, 0, 1}, {0, 1, 0}), dvec3(pi * double{bright}), 0.05);
     });
 }
