@@ -13,10 +13,10 @@ struct description {
     std::uint32_t supersampling = 2; ///< samples a pixel in each direction
     std::uint64_t seed = 1;          ///< of everything that is random
     std::uint32_t trees = 24;
-    float grass = 1;                 ///< times as much of it as is usual; 0: none
-    std::uint32_t cloud_voxels = 96; ///< on a side of the clouds' attenuation volumes
-    std::uint32_t bounces = 2;       ///< of light, before it is gathered where it is seen
-    std::uint32_t directions = 48;   ///< that each bounce, and the last gather, look along
+    float grass = 1;                  ///< times as much of it as is usual; 0: none
+    std::uint32_t cloud_voxels = 128; ///< on a side of the clouds' attenuation volumes
+    std::uint32_t bounces = 2;        ///< of light, before it is gathered where it is seen
+    std::uint32_t directions = 48;    ///< that each bounce, and the last gather, look along
 };
 
 /// What may change from frame to frame.

@@ -90,7 +90,7 @@ void add_scene_options(CLI::App& to, meadow_option_words& words) {
     to.add_option("--directions", words.directions, "Axes that light is gathered along (48)")
         ->type_name("D");
     to.add_option("--cloud-voxels", words.cloud_voxels,
-                  "Along each side of the clouds' attenuation volumes (96)")
+                  "Along each side of the clouds' attenuation volumes (128)")
         ->type_name("N");
     to.add_option("--supersampling", words.supersampling, "Samples a pixel, in each direction (2)")
         ->type_name("N");
