@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f759ce700e8284eb1d911cee4e251d049d7ec2abfdc4f709e29bc90bc2d1eca6
+// sha256 d719f674ae6cff6b859e59ded510867ef5279e1bdec88e934278117e2e8fa592
 #pragma once
 
 #include <skybark/kernels/meadow_bark.hpp>
@@ -403,19 +403,19 @@ return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 float cloud_light(float attenuation) {
 return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
-float country_noise(float x, float z, float size, float layer, float far) {
-float seen = clamp(2.0f - far / (300.0f * size), 0.0f, 1.0f);
+float country_noise(float x, float z, float size, float layer, float distance) {
+float seen = clamp(2.0f - distance / (300.0f * size), 0.0f, 1.0f);
 if (seen == 0.0f) {
 return 0.5f;
 }
 float noise = value_noise(x / size, z / size, layer, 2097152u);
 return 0.5f + (noise - 0.5f) * seen;
 }
-vec3 country_albedo(float x, float z, float far) {
-float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
-float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
-float fine = country_noise(x, z, 22.0f, 4.0f, far);
-float grain = country_noise(x, z, 3.5f, 5.0f, far);
+vec3 country_albedo(float x, float z, float distance) {
+float wood = country_noise(x, z, 900.0f, 1.0f, distance) * 0.6f + country_noise(x, z, 240.0f, 2.0f, distance) * 0.4f;
+float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, distance);
+float fine = country_noise(x, z, 22.0f, 4.0f, distance);
+float grain = country_noise(x, z, 3.5f, 5.0f, distance);
 float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
 float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
 float shade = 0.5f + 0.5f * fine + 0.5f * grain;
@@ -440,14 +440,13 @@ return vec3((x + 0.5f) / grid.points.x,
 }
 float irradiance_of_color(vec4 c, vec3 normal)
 {
-return max(0.886227f * c.x +
-1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x),
-0.0f);
+return 0.886227f * c.x + 1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x);
 }
 vec3 irradiance_of(vec4 red, vec4 green, vec4 blue, vec3 normal)
 {
-return vec3(irradiance_of_color(red, normal), irradiance_of_color(green, normal),
-irradiance_of_color(blue, normal));
+return vec3(max(irradiance_of_color(red, normal), 0.0f),
+max(irradiance_of_color(green, normal), 0.0f),
+max(irradiance_of_color(blue, normal), 0.0f));
 }
 struct surroundings_record {
 light_grid clouds;
@@ -842,7 +841,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 27832};
+)glsl", 27894};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1236,19 +1235,19 @@ return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 float cloud_light(float attenuation) {
 return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
-float country_noise(float x, float z, float size, float layer, float far) {
-float seen = clamp(2.0f - far / (300.0f * size), 0.0f, 1.0f);
+float country_noise(float x, float z, float size, float layer, float distance) {
+float seen = clamp(2.0f - distance / (300.0f * size), 0.0f, 1.0f);
 if (seen == 0.0f) {
 return 0.5f;
 }
 float noise = value_noise(x / size, z / size, layer, 2097152u);
 return 0.5f + (noise - 0.5f) * seen;
 }
-vec3 country_albedo(float x, float z, float far) {
-float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
-float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
-float fine = country_noise(x, z, 22.0f, 4.0f, far);
-float grain = country_noise(x, z, 3.5f, 5.0f, far);
+vec3 country_albedo(float x, float z, float distance) {
+float wood = country_noise(x, z, 900.0f, 1.0f, distance) * 0.6f + country_noise(x, z, 240.0f, 2.0f, distance) * 0.4f;
+float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, distance);
+float fine = country_noise(x, z, 22.0f, 4.0f, distance);
+float grain = country_noise(x, z, 3.5f, 5.0f, distance);
 float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
 float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
 float shade = 0.5f + 0.5f * fine + 0.5f * grain;
@@ -1273,14 +1272,13 @@ return vec3((x + 0.5f) / grid.points.x,
 }
 float irradiance_of_color(vec4 c, vec3 normal)
 {
-return max(0.886227f * c.x +
-1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x),
-0.0f);
+return 0.886227f * c.x + 1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x);
 }
 vec3 irradiance_of(vec4 red, vec4 green, vec4 blue, vec3 normal)
 {
-return vec3(irradiance_of_color(red, normal), irradiance_of_color(green, normal),
-irradiance_of_color(blue, normal));
+return vec3(max(irradiance_of_color(red, normal), 0.0f),
+max(irradiance_of_color(green, normal), 0.0f),
+max(irradiance_of_color(blue, normal), 0.0f));
 }
 struct surroundings_record {
 light_grid clouds;
@@ -1679,7 +1677,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 27845};
+)glsl", 27907};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 2b5592fe4d3228cba9479aa456b611b96b80157610996ed1650116988769a542
+// sha256 54e824ff1b2999f3d5b0722a7a5b943312d981416248659c916b694772844208
 #pragma once
 
 #include <skybark/kernels/meadow_land.hpp>
@@ -401,19 +401,19 @@ return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 float cloud_light(float attenuation) {
 return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
-float country_noise(float x, float z, float size, float layer, float far) {
-float seen = clamp(2.0f - far / (300.0f * size), 0.0f, 1.0f);
+float country_noise(float x, float z, float size, float layer, float distance) {
+float seen = clamp(2.0f - distance / (300.0f * size), 0.0f, 1.0f);
 if (seen == 0.0f) {
 return 0.5f;
 }
 float noise = value_noise(x / size, z / size, layer, 2097152u);
 return 0.5f + (noise - 0.5f) * seen;
 }
-vec3 country_albedo(float x, float z, float far) {
-float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
-float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
-float fine = country_noise(x, z, 22.0f, 4.0f, far);
-float grain = country_noise(x, z, 3.5f, 5.0f, far);
+vec3 country_albedo(float x, float z, float distance) {
+float wood = country_noise(x, z, 900.0f, 1.0f, distance) * 0.6f + country_noise(x, z, 240.0f, 2.0f, distance) * 0.4f;
+float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, distance);
+float fine = country_noise(x, z, 22.0f, 4.0f, distance);
+float grain = country_noise(x, z, 3.5f, 5.0f, distance);
 float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
 float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
 float shade = 0.5f + 0.5f * fine + 0.5f * grain;
@@ -438,14 +438,13 @@ return vec3((x + 0.5f) / grid.points.x,
 }
 float irradiance_of_color(vec4 c, vec3 normal)
 {
-return max(0.886227f * c.x +
-1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x),
-0.0f);
+return 0.886227f * c.x + 1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x);
 }
 vec3 irradiance_of(vec4 red, vec4 green, vec4 blue, vec3 normal)
 {
-return vec3(irradiance_of_color(red, normal), irradiance_of_color(green, normal),
-irradiance_of_color(blue, normal));
+return vec3(max(irradiance_of_color(red, normal), 0.0f),
+max(irradiance_of_color(green, normal), 0.0f),
+max(irradiance_of_color(blue, normal), 0.0f));
 }
 struct surroundings_record {
 light_grid clouds;
@@ -564,7 +563,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 17643};
+)glsl", 17705};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -956,19 +955,19 @@ return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 float cloud_light(float attenuation) {
 return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);
 }
-float country_noise(float x, float z, float size, float layer, float far) {
-float seen = clamp(2.0f - far / (300.0f * size), 0.0f, 1.0f);
+float country_noise(float x, float z, float size, float layer, float distance) {
+float seen = clamp(2.0f - distance / (300.0f * size), 0.0f, 1.0f);
 if (seen == 0.0f) {
 return 0.5f;
 }
 float noise = value_noise(x / size, z / size, layer, 2097152u);
 return 0.5f + (noise - 0.5f) * seen;
 }
-vec3 country_albedo(float x, float z, float far) {
-float wood = country_noise(x, z, 900.0f, 1.0f, far) * 0.6f + country_noise(x, z, 240.0f, 2.0f, far) * 0.4f;
-float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, far);
-float fine = country_noise(x, z, 22.0f, 4.0f, far);
-float grain = country_noise(x, z, 3.5f, 5.0f, far);
+vec3 country_albedo(float x, float z, float distance) {
+float wood = country_noise(x, z, 900.0f, 1.0f, distance) * 0.6f + country_noise(x, z, 240.0f, 2.0f, distance) * 0.4f;
+float field = country_noise(x + 0.6f * z, z - 0.6f * x, 170.0f, 3.0f, distance);
+float fine = country_noise(x, z, 22.0f, 4.0f, distance);
+float grain = country_noise(x, z, 3.5f, 5.0f, distance);
 float trees = clamp((wood - 0.5f) * 7.0f + (fine - 0.5f) * 1.5f, 0.0f, 1.0f);
 float straw = clamp((field - 0.45f) * 3.0f, 0.0f, 1.0f);
 float shade = 0.5f + 0.5f * fine + 0.5f * grain;
@@ -993,14 +992,13 @@ return vec3((x + 0.5f) / grid.points.x,
 }
 float irradiance_of_color(vec4 c, vec3 normal)
 {
-return max(0.886227f * c.x +
-1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x),
-0.0f);
+return 0.886227f * c.x + 1.023327f * ((c.y * normal.y + c.z * normal.z) + c.w * normal.x);
 }
 vec3 irradiance_of(vec4 red, vec4 green, vec4 blue, vec3 normal)
 {
-return vec3(irradiance_of_color(red, normal), irradiance_of_color(green, normal),
-irradiance_of_color(blue, normal));
+return vec3(max(irradiance_of_color(red, normal), 0.0f),
+max(irradiance_of_color(green, normal), 0.0f),
+max(irradiance_of_color(blue, normal), 0.0f));
 }
 struct surroundings_record {
 light_grid clouds;
@@ -1123,7 +1121,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 17656};
+)glsl", 17718};
 };
 
 } // namespace skybark::opengl

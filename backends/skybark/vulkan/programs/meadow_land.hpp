@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5172ee14522c3de970e29a8b8031d799c2e68feab6e4afb302def70d8436a95f
+// sha256 433584a575f3b05cd8c9b2224a2c3919ab86313b338e5b1c8887c20d2429da15
 #pragma once
 
 #include <skybark/kernels/meadow_land.hpp>
