@@ -110,10 +110,6 @@ class pipeline_cache {
                 release(*made);
                 return failure(done.error());
             }
-            context_->name_own(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, made->set,
-                               shape.draws ? "set layout, draws" : "set layout, compute");
-            context_->name_own(VK_OBJECT_TYPE_PIPELINE_LAYOUT, made->pipeline,
-                               shape.draws ? "pipeline layout, draws" : "pipeline layout, compute");
             l = std::move(made);
         }
         return l.get();
@@ -233,14 +229,23 @@ class pipeline_cache {
             !done) {
             return done;
         }
+        c.name_own(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, l.set,
+                   l.shape.draws ? "set layout of draws" : "set layout of dispatches");
         const VkPushConstantRange push{stages, 0, push_bytes};
         auto info = make<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
         info.setLayoutCount = 1;
         info.pSetLayouts = &l.set;
         info.pushConstantRangeCount = 1;
         info.pPushConstantRanges = &push;
-        return c.check(c.call.create_pipeline_layout(c.device(), &info, c.callbacks(), &l.pipeline),
-                       "make a pipeline layout");
+        auto done =
+            c.check(c.call.create_pipeline_layout(c.device(), &info, c.callbacks(), &l.pipeline),
+                    "make a pipeline layout");
+        if (done) {
+            c.name_own(VK_OBJECT_TYPE_PIPELINE_LAYOUT, l.pipeline,
+                       l.shape.draws ? "pipeline layout of draws"
+                                     : "pipeline layout of dispatches");
+        }
+        return done;
     }
 
     [[nodiscard]] result<VkShaderModule> make_module(spirv_words words, const char* name) {
