@@ -57,8 +57,8 @@ struct device_traffic {
     std::uint64_t down = 0;
 };
 
-/// Buffers, images and volumes that a device has made and that are still there, and their bytes; not
-/// what a backend keeps to work in, nor what was wrapped. (No part of the concept: backends may
+/// Buffers, images and volumes that a device has made and that are still there, and their bytes;
+/// not what a backend keeps to work in, nor what was wrapped. (No part of the concept: backends may
 /// have it.)
 struct device_usage {
     std::uint64_t objects = 0;
