@@ -235,8 +235,8 @@ double linear_of(int byte) {
     return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
-constexpr vec3 red_light(3, 2, 1);
-constexpr vec3 blue_light(0.5f, 1, 1.5f);
+constexpr vec3 red_light(45, 30, 15);
+constexpr vec3 blue_light(7.5f, 15, 22.5f);
 constexpr vec3 albedo(0.5f, 0.25f, 0.125f);
 
 } // namespace

@@ -370,9 +370,12 @@ class image_reader : public grids {
         const auto width = static_cast<std::size_t>(s.x);
         const std::size_t upper = width * static_cast<std::size_t>(wrapped(i.y, s.y, repeat));
         const std::size_t lower = width * static_cast<std::size_t>(wrapped(i.y + 1, s.y, repeat));
+        const auto mixed = [](const glm::vec4& a, const glm::vec4& b, float t) {
+            return a * (1.0f - t) + b * t;
+        };
         const auto between = [&](const auto& texel) {
-            return glm::mix(glm::mix(texel(upper + left), texel(upper + right), part.x),
-                            glm::mix(texel(lower + left), texel(lower + right), part.x), part.y);
+            return mixed(mixed(texel(upper + left), texel(upper + right), part.x),
+                         mixed(texel(lower + left), texel(lower + right), part.x), part.y);
         };
         if (what.format == image_format::rgba8) {
             return between([data = bound.image->data()](std::size_t index) {
