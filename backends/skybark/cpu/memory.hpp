@@ -171,7 +171,9 @@ class kept_list {
     static_assert(std::is_trivially_copyable_v<T>);
 
   public:
-    explicit kept_list(const memory_source* source) : source_(source) {}
+    /// `least`: values that there is room for from the first on.
+    explicit kept_list(const memory_source* source, std::size_t least = 64)
+        : source_(source), least_(least) {}
 
     void clear() noexcept { size_ = 0; }
     /// Left out where there is no memory: see `complete`.
@@ -186,7 +188,7 @@ class kept_list {
 
   private:
     [[nodiscard]] bool grow() {
-        const std::size_t room = std::max<std::size_t>(64, 2 * room_);
+        const std::size_t room = std::max(least_, 2 * room_);
         memory larger = source_ != nullptr && source_->memory.allocate != nullptr
                             ? allocate_from(source_->memory, room * sizeof(T))
                             : allocate_zeroed(room * sizeof(T));
@@ -203,6 +205,7 @@ class kept_list {
     }
 
     const memory_source* source_;
+    std::size_t least_;
     memory owned_;
     T* data_ = nullptr;
     std::size_t size_ = 0;

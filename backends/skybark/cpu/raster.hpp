@@ -524,8 +524,10 @@ template <class Device, draw_kernel K, class... Spans>
         });
 
         const std::uint32_t pieces = (triangles + piece_triangles - 1) / piece_triangles;
+        // Room for as many as there can be unless some are clipped: later frames need no more.
         while (scratch.pieces.size() < pieces) {
-            scratch.pieces.push_back({detail::kept_list<screen_triangle>(scratch.source)});
+            scratch.pieces.push_back(
+                {detail::kept_list<screen_triangle>(scratch.source, piece_triangles)});
         }
         device.parallel(pieces, [&](std::uint32_t p) {
             screen_piece& piece = scratch.pieces[p];
