@@ -56,7 +56,8 @@ void draw_times(const report& tells) {
     row("frame", "%.1f ms", 1e3 * tells.wall);
     row("triangles", "%.0f", static_cast<double>(tells.triangles));
     row("sent", "%.0f bytes", static_cast<double>(tells.sent));
-    row("memory", "%.0f MiB", static_cast<double>(tells.memory) / (1024.0 * 1024.0));
+    row("scene", "%.0f MiB", static_cast<double>(tells.scene) / (1024.0 * 1024.0));
+    row("process", "%.0f MiB", static_cast<double>(tells.memory) / (1024.0 * 1024.0));
     ImGui::EndTable();
 }
 

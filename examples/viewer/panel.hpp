@@ -17,7 +17,8 @@ struct report {
     std::span<const double> seconds;          ///< and how long each took on the device
     std::uint64_t triangles = 0;
     std::uint64_t sent = 0;   ///< bytes, to the device for this frame
-    std::uint64_t memory = 0; ///< bytes of the machine's that this process has
+    std::uint64_t scene = 0;  ///< bytes that the scene has of the device's memory
+    std::uint64_t memory = 0; ///< bytes that this process has of the machine's
     double wall = 0;          ///< s from a frame to the next
 };
 

@@ -142,6 +142,8 @@ class viewer {
         }
         tells_.sent = screen_.device().traffic().up - sent;
         drawn_ = {true, session_.now, session_.view, session_.time};
+        const meadow::contents held = scene_.holds();
+        tells_.scene = held.stand_bytes + held.cloud_bytes + held.light_bytes + held.picture_bytes;
         tells_.memory = resident_bytes();
         tells_.wall = passed;
         const auto triangles = scene_.triangles();

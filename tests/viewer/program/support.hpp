@@ -16,7 +16,8 @@ using tests::words;
 /// An X server without a screen to see, for one test.
 class display {
   public:
-    display() {
+    /// What would be seen is in a file of `folder`.
+    explicit display(const std::filesystem::path& folder) : screen_(folder / "Xvfb_screen0") {
         int ends[2] = {-1, -1};
         if (::pipe(ends) != 0) {
             return;
@@ -29,7 +30,7 @@ class display {
             const int silence = ::open("/dev/null", O_WRONLY);
             ::dup2(silence, STDERR_FILENO);
             ::execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "800x600x24",
-                     static_cast<char*>(nullptr));
+                     "-fbdir", folder.c_str(), "-nocursor", static_cast<char*>(nullptr));
             std::_Exit(127);
         }
         ::close(ends[1]);
@@ -51,7 +52,34 @@ class display {
     /// Empty: there is none.
     [[nodiscard]] const std::string& name() const { return name_; }
 
+    /// The pixels of the screen's top left corner, RGBA, by the format of xwd(1): a header of
+    /// big-endian words, colours of 12 bytes, then rows of blue, green, red and nothing.
+    [[nodiscard]] std::vector<unsigned char> corner(std::size_t width, std::size_t height) const {
+        const std::string file = tests::read_file(screen_);
+        const auto word = [&](std::size_t i) {
+            std::size_t value = 0;
+            for (std::size_t k = 4 * i; k < 4 * i + 4; ++k) {
+                value = value << 8 | static_cast<unsigned char>(file.at(k));
+            }
+            return value;
+        };
+        const std::size_t first = word(0) + 12 * word(19);
+        const std::size_t row = word(12);
+        std::vector<unsigned char> pixels;
+        for (std::size_t y = 0; y < height; ++y) {
+            for (std::size_t x = 0; x < width; ++x) {
+                for (const std::size_t channel : {2, 1, 0}) {
+                    pixels.push_back(
+                        static_cast<unsigned char>(file.at(first + y * row + 4 * x + channel)));
+                }
+                pixels.push_back(255);
+            }
+        }
+        return pixels;
+    }
+
   private:
+    std::filesystem::path screen_;
     pid_t server_ = -1;
     std::string name_;
 };
@@ -62,9 +90,9 @@ inline bool windows_are_required() { return std::getenv("SKYBARK_REQUIRE_GLFW") 
 class program : public tests::tool {
   protected:
     /// A meadow that is soon grown and soon drawn.
-    static inline const words small{"--trees",        "2",  "--grass",   "0.05",
-                                    "--directions",   "2",  "--bounces", "1",
-                                    "--cloud-voxels", "16", "--cloud",   "0.2"};
+    static inline const words small{"--trees",        "1",  "--grass",   "0.02",
+                                    "--directions",   "1",  "--bounces", "1",
+                                    "--cloud-voxels", "16", "--cloud",   "0.1"};
 
     /// What starts the viewer with these, in the folder, on a display (none where it is empty).
     [[nodiscard]] words command(const std::string& on, const words& arguments) const {
@@ -77,6 +105,8 @@ class program : public tests::tool {
         all.insert(all.end(), arguments.begin(), arguments.end());
         return all;
     }
+    /// For what isn't the viewer's.
+    [[nodiscard]] std::filesystem::path beside() const { return folder.parent_path(); }
     [[nodiscard]] outcome view(const std::string& on, const words& arguments) const {
         return run(command(on, arguments));
     }
