@@ -35,7 +35,7 @@ land::land(std::uint64_t seed) {
         }
     };
     fill(floor_, 118, 0.66, 0.62, 0.63);
-    fill(hills_, 5200, 0.71, 40, 0.74);
+    fill(hills_, 5200, 0.71, 34, 0.76);
 }
 
 land::point land::at(double x, double z) const {
@@ -59,7 +59,7 @@ land::point land::at(double x, double z) const {
     const double t = std::min(std::log(far / hills_begin) / span, 1.0);
     const double part = t * t * (3 - 2 * t);
     const double steep = t < 1 ? 6 * t * (1 - t) / (span * far * far) : 0; // d part / d x, over x
-    const point hills = sum_of(hills_, {52, 0, 0});
+    const point hills = sum_of(hills_, {38, 0, 0});
     sum.height += part * hills.height;
     sum.dx += part * hills.dx + steep * x * hills.height;
     sum.dz += part * hills.dz + steep * z * hills.height;

@@ -30,7 +30,7 @@ class land {
     static constexpr std::uint32_t light_cells = 32; ///< on a side of the square, for light
 
     /// What meadow grass looks like from afar, mixed as it stands: its albedo.
-    static constexpr glm::vec3 albedo{0.098f, 0.135f, 0.040f};
+    static constexpr glm::vec3 albedo{0.102f, 0.131f, 0.027f};
 
     explicit land(std::uint64_t seed);
 

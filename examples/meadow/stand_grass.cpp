@@ -114,7 +114,7 @@ material tuft_picture(const grass_look& grass, std::uint32_t seed) {
 constexpr grass_look lush_grass{
     {0.32f, 0.43f, 0.19f}, {0.41f, 0.49f, 0.24f}, {0.47f, 0.47f, 0.29f}, 28, 2};
 constexpr grass_look dry_grass{
-    {0.36f, 0.42f, 0.20f}, {0.50f, 0.50f, 0.28f}, {0.62f, 0.55f, 0.37f}, 24, 7};
+    {0.36f, 0.42f, 0.22f}, {0.47f, 0.49f, 0.30f}, {0.57f, 0.53f, 0.39f}, 25, 6};
 
 /// A disc of petals around a middle.
 material flower_picture(int petals, float slender, glm::vec3 petal, glm::vec3 middle, float eye) {

@@ -29,7 +29,7 @@ std::vector<glm::vec2> places() {
 
 } // namespace
 
-TEST(Land, NormalsMatchFiniteDifferencesOfTheHeight) {
+TEST(land, normals_match_finite_differences_of_the_height) {
     for (const std::uint64_t seed : {1u, 2u, 77u}) {
         const land ground(seed);
         for (const glm::vec2 at : places()) {
@@ -48,7 +48,7 @@ TEST(Land, NormalsMatchFiniteDifferencesOfTheHeight) {
     }
 }
 
-TEST(Land, HeightsHaveNoSteps) {
+TEST(land, heights_have_no_steps) {
     const land ground(1);
     for (const glm::vec2 at : places()) {
         // No slope anywhere is steeper than 1 : 1.
@@ -59,7 +59,7 @@ TEST(Land, HeightsHaveNoSteps) {
     }
 }
 
-TEST(Land, IsGentleInTheStandAndHillyAround) {
+TEST(land, is_gentle_in_the_stand_and_hilly_around) {
     for (const std::uint64_t seed : {1u, 2u, 3u, 12345u}) {
         const land ground(seed);
         for (float x = -80; x <= 80; x += 4) {
@@ -82,7 +82,7 @@ TEST(Land, IsGentleInTheStandAndHillyAround) {
     EXPECT_NE(land(1).height(10, 10), land(2).height(10, 10));
 }
 
-TEST(Land, MeshIsOneSurfaceOutToTheHorizon) {
+TEST(land, mesh_is_one_surface_out_to_the_horizon) {
     const land ground(1);
     const meadow::land_mesh mesh = ground.mesh();
     const std::uint32_t n = land::points;
@@ -112,7 +112,7 @@ TEST(Land, MeshIsOneSurfaceOutToTheHorizon) {
     EXPECT_NEAR(far, land::horizon, 1);
 }
 
-TEST(Land, VerticesShowTheLightOfTheNearestInnerOne) {
+TEST(land, vertices_show_the_light_of_the_nearest_inner_one) {
     const land ground(1);
     const meadow::land_mesh mesh = ground.mesh();
     const std::uint32_t inner = land::points * land::points;
@@ -135,7 +135,7 @@ TEST(Land, VerticesShowTheLightOfTheNearestInnerOne) {
     }
 }
 
-TEST(Land, LightMeetsTheWholeSquareOnce) {
+TEST(land, light_meets_the_whole_square_once) {
     const land ground(1);
     std::vector<gather_triangle> triangles(3);
     ground.add_light_triangles(triangles, 7);

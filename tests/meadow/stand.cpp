@@ -91,7 +91,7 @@ double area_of(const gather_triangle& t) {
 
 } // namespace
 
-TEST(StandOfTrees, PlacesAreApartOnTheLandAndOutOfTheWay) {
+TEST(stand, places_are_apart_on_the_land_and_out_of_the_way) {
     const meadow::camera from;
     for (const std::uint32_t count : {0u, 1u, 24u, 120u}) {
         const auto places = meadow::place_trees(count, 1);
@@ -115,7 +115,7 @@ TEST(StandOfTrees, PlacesAreApartOnTheLandAndOutOfTheWay) {
     }
 }
 
-TEST(StandOfTrees, TreesStandOnTheLand) {
+TEST(stand, trees_stand_on_the_land) {
     const land ground(1);
     const auto places = meadow::place_trees(6, 1);
     std::size_t roots = 0;
@@ -135,7 +135,7 @@ TEST(StandOfTrees, TreesStandOnTheLand) {
     EXPECT_EQ(roots, 6u);
 }
 
-TEST(StandOfTrees, GrassGrowsOnTheLandAndThinsOutWithTheDistance) {
+TEST(stand, grass_grows_on_the_land_and_thins_out_with_the_distance) {
     const land ground(1);
     const auto grass = value_of(meadow::grow_grass(0.1f, ground, 1));
     ASSERT_EQ(grass.stems.size(), grass.area.size());
@@ -163,7 +163,7 @@ TEST(StandOfTrees, GrassGrowsOnTheLandAndThinsOutWithTheDistance) {
                 0.1 * static_cast<double>(twice.kinds[0].blades.size()));
 }
 
-TEST(StandOfTrees, LightMeetsTheLeavesArea) {
+TEST(stand, light_meets_the_leaves_area) {
     const land ground(1);
     cpu::device device;
     const meadow::description what = small();
@@ -205,7 +205,7 @@ TEST(StandOfTrees, LightMeetsTheLeavesArea) {
     EXPECT_LE(stand.light_triangles(), 2 * small_budget.leaves + 6 * small_budget.wood);
 }
 
-TEST(StandOfTrees, LightFollowsTheSway) {
+TEST(stand, light_follows_the_sway) {
     cpu::device device;
     auto stand = grown(device, small(), 12);
     std::vector<gather_triangle> rest;
@@ -239,7 +239,7 @@ TEST(StandOfTrees, LightFollowsTheSway) {
     EXPECT_EQ(recorded.back().c, glm::vec3(0));
 }
 
-TEST(StandOfTrees, NothingBreaksInAWindAndTwoAreAlike) {
+TEST(stand, nothing_breaks_in_a_wind_and_two_are_alike) {
     cpu::device device;
     std::array<std::vector<float>, 2> made;
     for (auto& one : made) {
@@ -257,7 +257,7 @@ TEST(StandOfTrees, NothingBreaksInAWindAndTwoAreAlike) {
     EXPECT_EQ(std::memcmp(made[0].data(), made[1].data(), made[0].size() * sizeof(float)), 0);
 }
 
-TEST(StandOfTrees, TheWindChangesWithoutAJump) {
+TEST(stand, the_wind_changes_without_a_jump) {
     cpu::device device;
     auto stand = grown(device, small(), 10);
     const auto light_at = [&](double seconds, float step) {
@@ -317,14 +317,14 @@ void expect_the_cpus_stand(B& device) {
     EXPECT_NEAR(static_cast<double>(value_of(there.triangles(device))), triangles,
                 1e-3 * triangles); // at thresholds of detail roundings decide
 }
-TEST(StandOfTrees, OpenglHasTheCpus) {
+TEST(stand, opengl_has_the_cpus) {
     support::with_device("opengl", [](auto& device) { expect_the_cpus_stand(device); });
 }
-TEST(StandOfTrees, VulkanHasTheCpus) {
+TEST(stand, vulkan_has_the_cpus) {
     support::with_device("vulkan", [](auto& device) { expect_the_cpus_stand(device); });
 }
 
-TEST(StandOfTrees, AFarViewCostsLess) {
+TEST(stand, a_far_view_costs_less) {
     cpu::device device;
     auto stand = grown(device, small());
     const auto near = value_of(stand.triangles(device));
@@ -344,7 +344,7 @@ TEST(StandOfTrees, AFarViewCostsLess) {
     EXPECT_GT(value_of(stand.triangles(device)), near);
 }
 
-TEST(StandOfTrees, SteadyFramesAllocateNothing) {
+TEST(stand, steady_frames_allocate_nothing) {
 #if SKYBARK_TEST_COUNTS_ALLOCATIONS
     cpu::device device;
     auto stand = grown(device, small());
@@ -367,7 +367,7 @@ TEST(StandOfTrees, SteadyFramesAllocateNothing) {
 #endif
 }
 
-TEST(StandOfTrees, NeitherTreesNorGrassIsAStandAsWell) {
+TEST(stand, neither_trees_nor_grass_is_a_stand_as_well) {
     cpu::device device;
     meadow::description nothing;
     nothing.trees = 0;
