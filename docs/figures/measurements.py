@@ -1,0 +1,45 @@
+"""What `docs/figures/make --measure` runs, and where it keeps what they say. All commands are here, and nowhere else.
+
+{out} stands for the file that a command writes, {folder} for one that is thrown away.
+"""
+BENCHMARKS = "build/release/bin/skybark_benchmarks"
+TOOL = "build/release/bin/skybark"
+
+
+def benchmark(pattern, repetitions):
+    return (f"{BENCHMARKS} --benchmark_filter='{pattern}' --benchmark_repetitions={repetitions} "
+            "--benchmark_out={out}")
+
+
+def meadow(backend):
+    return (f"{TOOL} meadow --backend {backend} --seconds 0.25 --fps 12 -o {{folder}}/meadow_%04d.png "
+            "--stats {out} --quiet")
+
+
+# {name: (file in docs/figures/data, [command, …])}: what several commands say goes into one file.
+MEASUREMENTS = {
+    "meadow_cpu": ("meadow_cpu.json", [meadow("cpu")]),
+    "meadow_opengl": ("meadow_opengl.json", [meadow("opengl")]),
+    "meadow_vulkan": ("meadow_vulkan.json", [meadow("vulkan")]),
+    "relight": ("relight.json", [
+        benchmark("clouds/(floor|relight/(harris|impulse_scan|impulse_scan_erf)_cpu/"
+                  "(9382|32914|60134)_)", 3),
+        # Minutes: rectangles in software.
+        benchmark("clouds/relight/(shadow_polygons_stage_(cpu|vulkan)|shadow_polygons_opengl|"
+                  "shadow_polygons_tiles_copied_degenerate_opengl|"
+                  "(harris|impulse_scan|impulse_scan_erf)_(vulkan|opengl))/60134_256", 1)]),
+    "relight_curves": ("relight_curves.json", [benchmark("clouds/(by_|floor)", 3)]),
+    "bundle": ("bundle.json", [
+        benchmark("^gather/bundle/(resolve_.*|embree_(shared|random)|peel_opengl)/", 3)]),
+    "gather_error": ("gather_error.csv", [
+        "build/release/bin/skybark_gather_error park 1048576 2560 1",
+        "build/release/bin/skybark_gather_error canopy 1048576 512 1"]),
+    "generate": ("generate.json", [
+        benchmark("trees/generate/(floor|cpu|paper)/[0-9]{6,7}/|"
+                  "trees/(generate|draw)/(vulkan|opengl|cpu)/1321504/", 5),
+        # Some 8 GB of memory.
+        benchmark("trees/generate/(cpu|paper)/50000000/", 1)]),
+    "sway": ("sway.json", [
+        benchmark("trees/sway/(one_core/(15000|100000|1000000)|(opengl|vulkan)/15000)/", 5)]),
+    "branch": ("branch.json", [benchmark("trees/branch.*/[14]000000/", 9)]),
+}

@@ -1,0 +1,287 @@
+"""The tables of figures: each function gives one as a list of lines of Markdown."""
+import re
+
+from measurements import MEASUREMENTS
+from rows import Rows, read_errors, read_stats
+
+BACKENDS = ["cpu", "opengl", "vulkan"]
+
+
+def figure(value):
+    """Three digits at most; a dash for what wasn't measured."""
+    if value is None:
+        return "–"
+    if value >= 100:
+        return f"{value:,.0f}"
+    if value >= 10:
+        return f"{value:.3g}"
+    return f"{value:.1f}" if value >= 1 else f"{value:.2g}"
+
+
+def ratio(above, below):
+    return above / below if above and below else None
+
+
+def bold(value):
+    return "–" if value is None else f"**{figure(value)}**"
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(row) + " |" for row in [head, *rows]]
+    return [lines[0], "|---" * len(head) + "|", *lines[1:]]
+
+
+def on(context, backend):
+    """The backend, and the device that it ran on."""
+    driver = context.get("drivers", {}).get(backend)
+    return f"`{backend}`" if driver is None or backend == "cpu" else (
+        f"`{backend}` ({re.split(',| [(]', driver)[0]})")
+
+
+def measured(context, measurement):
+    """Where and when, and by which command."""
+    about = f"{context['date']}, {context['machine']}"
+    if "note" in context:
+        about += f" ({context['note']})"
+    return ["", f"<sub>{about}; again: `docs/figures/make --measure {measurement}`</sub>"]
+
+
+# ---- The meadow ----------------------------------------------------------------------------------
+
+STAGES = [("sway", "wind and sway"), ("mesh", "all triangles"), ("clouds", "clouds and their light"),
+          ("light", "light, gathered"), ("draw", "the picture")]
+MEMORY = [("stand", "trees and grass"), ("clouds", "clouds"), ("light", "light"),
+          ("picture", "images that are drawn into")]
+MEADOW_FILES = [("meadow_cpu.json", "`cpu`"), ("meadow_opengl.json", "`opengl`"),
+                ("meadow_vulkan.json", "`vulkan`"), ("meadow_vulkan_gpu.json", "`vulkan`"),
+                ("meadow_opengl_gpu.json", "`opengl`")]
+
+
+def seconds(value):
+    if value is None:
+        return "–"
+    return f"{1e3 * value:.3g} ms" if value < 1 else f"{value:.3g} s"
+
+
+def mebibytes(value):
+    return "–" if value is None else f"{value / 2**20:,.0f} MiB"
+
+
+def stage_seconds(report, stage):
+    """Of one frame."""
+    return report["seconds"].get(stage, 0) / report["counts"]["frames"] if report else None
+
+
+def scene_of(report):
+    """What was drawn, on what."""
+    context, counts = report.get("context", {}), report["counts"]
+    about = [context.get("size", "1280 × 720"), f"{counts['trees']} trees",
+             f"{counts['triangles']:,} triangles", f"{counts['particles']:,} particles of clouds",
+             f"light at {counts['gather_points']:,} points along {counts['directions']} axes",
+             f"{counts['bounces']} bounces"]
+    where = [context[key] for key in ("date", "machine") if key in context]
+    return "<sub>" + ", ".join(where + about) + "</sub>"
+
+
+def meadow():
+    reports = [(read_stats(file), title) for file, title in MEADOW_FILES]
+    # A software driver that wasn't measured yet has its column; a GPU only where there was one.
+    reports = [(r, t) for i, (r, t) in enumerate(reports) if r or i < 3]
+    heads = [f"{title}, {report['device']}" if report else title for report, title in reports]
+    frames = [sum(stage_seconds(r, s) for s, _ in STAGES) if r else None for r, _ in reports]
+    rows = [[f"{words} (`{stage}`)", *(seconds(stage_seconds(r, stage)) for r, _ in reports)]
+            for stage, words in STAGES]
+    rows.append(["**a frame**", *(f"**{seconds(f)}**" if f else "–" for f in frames)])
+    rows.append(["frames a second", *(figure(1 / f if f else None) for f in frames)])
+    rows.append(["once: growing it, and swaying it in", *(seconds(
+        r["seconds"]["grow"] + r["seconds"]["settle"]) if r else "–" for r, _ in reports)])
+    rows += [[f"memory: {words}", *(mebibytes(r["memory"][part] if r else None) for r, _ in reports)]
+             for part, words in MEMORY]
+    notes = dict.fromkeys(scene_of(report) for report, _ in reports if report)
+    again = "<sub>again: `docs/figures/make --measure meadow_cpu meadow_opengl meadow_vulkan`</sub>"
+    return table(["", *heads], rows) + [""] + "<br>\n".join([*notes, again]).split("\n")
+
+
+# ---- Clouds --------------------------------------------------------------------------------------
+
+COUNTS, SIDES = [9382, 32914, 60134], [128, 256, 384]
+
+
+def relight():
+    rows = Rows("relight.json")
+
+    def ms(method, count, side, backend="cpu"):
+        return rows.get(f"clouds/relight/{method}_{backend}/{count}_{side}")
+
+    lines = [["Harris, 128² / 256² / 384²",
+              *(" / ".join(figure(ms("harris", n, side)) for side in SIDES) for n in COUNTS), "", ""]]
+    for method, words in (("impulse_scan", "step"), ("impulse_scan_erf", "erf")):
+        for side in SIDES:
+            last = ms(method, COUNTS[-1], side)
+            of_floor = rows.get(f"clouds/relight/{method}_cpu/{COUNTS[-1]}_{side}", "floor")
+            lines.append([f"`impulse_scan`, {words}, {side}³",
+                          *(bold(ms(method, n, side)) for n in COUNTS), figure(of_floor),
+                          figure(ratio(ms("harris", COUNTS[-1], side), last))])
+    head = ["`cpu`, ms", *(f"{n:,} particles" if n == COUNTS[0] else f"{n:,}" for n in COUNTS),
+            "× the floor", "× as fast as Harris"]
+    return table(head, lines) + measured(rows.context, "relight")
+
+
+def relight_backends():
+    rows = Rows("relight.json")
+
+    def ms(method, backend):
+        return rows.get(f"clouds/relight/{method}_{backend}/60134_256")
+
+    order = ["cpu", "vulkan", "opengl"]
+    tiles = ms("shadow_polygons_tiles_copied_degenerate", "opengl")
+    polygons = [figure(ms("shadow_polygons_stage", "cpu")), figure(ms("shadow_polygons_stage", "vulkan")),
+                f"{figure(ms('shadow_polygons', 'opengl'))} (a list), {figure(tiles)} (its tiles, copied)"]
+    lines = [["Harris: one after another, read back", *(figure(ms("harris", b)) for b in order)],
+             ["`shadow_polygons`: the paper's rectangles", *polygons],
+             ["`impulse_scan`, step", *(bold(ms("impulse_scan", b)) for b in order)],
+             ["`impulse_scan`, erf (the default)", *(bold(ms("impulse_scan_erf", b)) for b in order)],
+             ["step: × as fast as Harris",
+              *(figure(ratio(ms("harris", b), ms("impulse_scan", b))) for b in order)],
+             ["writing the volume once", *(figure(rows.get(f"clouds/floor/{b}/256")) for b in order)]]
+    head = ["60,134 particles, 256³, ms", *(on(rows.context, b) for b in order)]
+    return table(head, lines) + measured(rows.context, "relight")
+
+
+# ---- Gathered light ------------------------------------------------------------------------------
+
+SCENES = [("cornell", "box (36 triangles)", "box"), ("park", "park (202,560)", "park"),
+          ("canopy", "canopy (199,200)", "canopy")]
+
+
+def bundle():
+    rows = Rows("bundle.json")
+    lines = []
+    for samples in (65536, 1048576):
+        for scene, words, short in SCENES:
+            def rate(method):
+                return rows.get(f"gather/bundle/{method}/{scene}_{samples}", "items_per_second", 1e-6)
+            cpu, shared = rate("resolve_cpu"), rate("embree_shared")
+            times = f" ({ratio(cpu, shared):.2f})" if cpu and shared else ""
+            lines.append([f"{words if samples == 65536 else short}, {samples:,}", bold(cpu) + times,
+                          *(figure(rate(m)) for m in ("embree_shared", "embree_random",
+                                                      "resolve_vulkan", "resolve_opengl",
+                                                      "peel_opengl"))])
+    head = ["points", "`resolve` on `cpu`", "Embree, shared", "Embree, random", "`resolve` on `vulkan`",
+            "`opengl`", "`peel` (the document's) on `opengl`"]
+    return table(head, lines) + measured(rows.context, "bundle")
+
+
+def gather_error():
+    scenes = read_errors()
+    counts = [8, 32, 128, 512, 2048]
+    methods = [("final_gather", "bundles"), ("embree_random", "random rays of each point's own"),
+               ("embree_lattice", "evenly spread rays of each point's own")]
+    lines = []
+    for scene in ("park", "canopy"):
+        for method, words in methods:
+            of = {int(d): e for d, _, e in scenes[scene].get(method, [])}
+            lines.append([f"{scene}, {words}",
+                          *(figure(100 * of[n]) if n in of else "" for n in counts)])
+    return table(["directions", *(f"{n:,}" for n in counts)], lines)
+
+
+# ---- Trees ---------------------------------------------------------------------------------------
+
+def generate():
+    rows = Rows("generate.json")
+    lines = []
+    sizes = sorted({int(name.split("/")[3]) for name in rows.medians if "/generate/" in name})
+    for n in sizes:
+        def rate(method):
+            return rows.get(f"trees/generate/{method}/{n}", "triangles", 1e-6)
+        lines.append([f"{n:,}" + (", one run" if n == 50000000 else ""), bold(rate("cpu")),
+                      figure(rate("paper")), figure(ratio(rate("cpu"), rate("paper"))),
+                      figure(rate("floor"))])
+    head = ["polygons", "`cpu`", "the paper's CPU path", "ratio", "writing the bytes alone"]
+    return table(head, lines) + measured(rows.context, "generate")
+
+
+def drawn():
+    rows = Rows("generate.json")
+    size = 1321504
+    lines = [["all triangles anew, million a second",
+              *(figure(rows.get(f"trees/generate/{b}/{size}", "triangles", 1e-6)) for b in BACKENDS)],
+             ["drawing them, 1280 × 800, ms",
+              *(figure(rows.get(f"trees/draw/{b}/{size}")) for b in BACKENDS)]]
+    head = [f"{size:,} polygons", *(on(rows.context, b) for b in BACKENDS)]
+    return table(head, lines) + measured(rows.context, "generate")
+
+
+def sway():
+    rows = Rows("sway.json")
+    lines = []
+    for name, words in (("one_core", "`cpu`, one core"), ("opengl", on(rows.context, "opengl")),
+                        ("vulkan", on(rows.context, "vulkan"))):
+        lines.append([words, *(figure(rows.get(f"trees/sway/{name}/{n}"))
+                               for n in (15000, 100000, 1000000))])
+    head = ["one dynamic step, ms", "15,000 joints", "100,000", "1,000,000"]
+    return table(head, lines) + measured(rows.context, "sway")
+
+
+def branch():
+    rows = Rows("branch.json")
+    lines = []
+    for name, words in (("branch/floor", "writing the bytes, two threads"), ("branch/cpu", "`cpu`, rings"),
+                        ("branch/vulkan", on(rows.context, "vulkan") + ", rings"),
+                        ("branch/opengl", on(rows.context, "opengl") + ", rings as points"),
+                        ("branch/paper", "the paper's loop, one thread, rings"),
+                        ("branch_list/vulkan", "`vulkan`, triangle list"),
+                        ("branch_list/opengl", "`opengl`, triangle strips, as in the paper")):
+        def get(n, key, scale):
+            return rows.get(f"trees/{name}/{n}", key, scale)
+        sizes = (1000000, 4000000)
+        floors = ", ".join(f"{get(n, 'floor', 100) or 0:.0f} %" for n in sizes)
+        lines.append([words, *((bold if name == "branch/cpu" else figure)(get(n, "triangles", 1e-6))
+                               for n in sizes), "" if name == "branch/floor" else floors])
+    head = ["million triangles a second", "1 million", "4 million",
+            "bytes, of the floor measured beside the row"]
+    return table(head, lines) + measured(rows.context, "branch")
+
+
+# ---- Together ------------------------------------------------------------------------------------
+
+def headline():
+    clouds, rays = Rows("relight.json"), Rows("bundle.json")
+    trees, steps, wood = Rows("generate.json"), Rows("sway.json"), Rows("branch.json")
+    relit = clouds.get("clouds/relight/impulse_scan_cpu/60134_256")
+    harris = clouds.get("clouds/relight/harris_cpu/60134_256")
+    park = rays.get("gather/bundle/resolve_cpu/park_1048576", "items_per_second", 1e-6)
+    embree = rays.get("gather/bundle/embree_shared/park_1048576", "items_per_second", 1e-6)
+    grown = trees.get("trees/generate/cpu/1321504", "triangles", 1e-6)
+    paper = trees.get("trees/generate/paper/1321504", "triangles", 1e-6)
+    swayed = steps.get("trees/sway/one_core/15000")
+    rings = wood.get("trees/branch/cpu/1000000", "triangles", 1e-6)
+    floor = wood.get("trees/branch/cpu/1000000", "floor", 100)
+    lines = [["a cloud's light, made anew: 60,134 particles, 256³ voxels", f"{figure(relit)} ms",
+              f"{figure(ratio(harris, relit))} × as fast as Harris and Lastra's pass", "relight"],
+             ["rays in bundles: a million points in a park of 202,560 triangles",
+              f"{figure(park)} million rays a second",
+              f"{ratio(park, embree):.2f} × Embree's, whose hierarchy is built beforehand", "bundle"],
+             ["trees with bark and leaves, swayed and meshed anew: 1,321,504 triangles",
+              f"{figure(grown)} million triangles a second",
+              f"{figure(ratio(grown, paper))} × the paper's algorithm as a plain loop", "generate"],
+             ["branches alone, a million triangles", f"{figure(rings)} million triangles a second",
+              f"{figure(floor)} % of writing the bytes and nothing else", "branch"],
+             ["one step of sway, 15,000 joints, one core", f"{figure(swayed)} ms",
+              f"{1e6 * swayed / 15000:.0f} ns a joint", "sway"]]
+    return table(["on `cpu`", "", "beside it", "`docs/figures/make --measure …`"],
+                 [[*line[:3], f"`{line[3]}`"] for line in lines]) + [
+        "", f"<sub>{clouds.context['date']}, {clouds.context['machine']}, medians</sub>"]
+
+
+def commands():
+    lines = []
+    for name, (_, each) in MEASUREMENTS.items():
+        lines += [f"# {name}", *each]
+    return ["```", *(line.replace("{out}", "OUT").replace("{folder}", "FOLDER") for line in lines),
+            "```"]
+
+
+TABLES = {of.__name__: of for of in (headline, meadow, relight, relight_backends, bundle, gather_error,
+                                     generate, drawn, sway, branch, commands)}
