@@ -17,7 +17,7 @@ namespace skybark::benchmarks {
 
 /// A scene and points on it in Morton order.
 struct gather_work {
-    scenes::gather_scene scene;
+    scenes::surface_list scene;
     std::vector<gather_sample> samples;
     gather::bounds box;
     float lift = 0; ///< m

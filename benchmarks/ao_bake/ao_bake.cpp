@@ -69,7 +69,7 @@ int write_scene(const char* path) {
 }
 
 [[nodiscard]] result<device_scene> open_scene(cpu::device& device,
-                                              const scenes::gather_scene& scene) {
+                                              const scenes::surface_list& scene) {
     gather::scene_description what;
     what.triangles = scene.triangles;
     what.materials = scene.materials;
@@ -160,7 +160,7 @@ struct checked_texels {
 }
 
 /// Bakes with twice the directions each time, from the start, until the error is small enough.
-[[nodiscard]] result<void> bake(cpu::device& device, const scenes::gather_scene& park,
+[[nodiscard]] result<void> bake(cpu::device& device, const scenes::surface_list& park,
                                 const checked_texels& checked, std::uint32_t side, double wanted,
                                 double other_seconds) {
     std::vector<glm::vec4> found(std::size_t{side} * side);

@@ -39,7 +39,7 @@ using clock = std::chrono::steady_clock;
     return std::chrono::duration<double>(clock::now() - begin).count();
 }
 
-[[nodiscard]] gather_light_sources light_of(const scenes::gather_scene& scene) {
+[[nodiscard]] gather_light_sources light_of(const scenes::surface_list& scene) {
     gather_light_sources light;
     light.sky = glm::vec3(1);
     for (const gather_triangle& t : scene.triangles) {

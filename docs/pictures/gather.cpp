@@ -195,7 +195,7 @@ class studio {
 // ---- The pictures
 // --------------------------------------------------------------------------------
 
-shot box_shot(const scenes::gather_scene& box) {
+shot box_shot(const scenes::surface_list& box) {
     shot made;
     made.scene.triangles = box.triangles;
     made.scene.materials = box.materials;
@@ -212,7 +212,7 @@ shot box_shot(const scenes::gather_scene& box) {
 }
 
 result<void> draw_box(studio& in) {
-    const scenes::gather_scene box = scenes::cornell();
+    const scenes::surface_list box = scenes::cornell();
     const shot whole = in.set(box_shot(box));
     const auto found = in.light(whole);
     if (!found) {
@@ -221,7 +221,7 @@ result<void> draw_box(studio& in) {
     return in.draw("gather_box", whole, *found, 0.9f);
 }
 
-shot park_shot(const scenes::gather_scene& park) {
+shot park_shot(const scenes::surface_list& park) {
     shot made;
     made.scene.triangles = park.triangles;
     made.scene.materials = park.materials;
@@ -237,7 +237,7 @@ shot park_shot(const scenes::gather_scene& park) {
 }
 
 result<void> draw_park(studio& in) {
-    const scenes::gather_scene park = scenes::park();
+    const scenes::surface_list park = scenes::park();
     shot of = in.set(park_shot(park));
     const auto direct = in.light(of);
     if (!direct) {
@@ -256,7 +256,7 @@ result<void> draw_park(studio& in) {
 }
 
 result<void> draw_park_error(studio& in) {
-    const scenes::gather_scene park = scenes::park();
+    const scenes::surface_list park = scenes::park();
     shot few = park_shot(park);
     few.view.width = 450;
     few.view.height = 300;

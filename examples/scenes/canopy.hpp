@@ -7,7 +7,7 @@
 namespace skybark::scenes {
 
 /// A leaf of 10 cm by 6 cm that points anywhere.
-inline void add_leaf(gather_scene& scene, std::uint32_t material, glm::vec3 middle,
+inline void add_leaf(surface_list& scene, std::uint32_t material, glm::vec3 middle,
                      random_numbers& random) {
     const glm::vec3 along = random.direction();
     glm::vec3 across;
@@ -21,8 +21,8 @@ inline void add_leaf(gather_scene& scene, std::uint32_t material, glm::vec3 midd
 
 /// 199,200 triangles: 20 m of ground, then 24 crowns of 4,000 leaves. The ground is the first 7,200
 /// of them.
-[[nodiscard]] inline gather_scene canopy() {
-    gather_scene scene;
+[[nodiscard]] inline surface_list canopy() {
+    surface_list scene;
     scene.name = "canopy";
     random_numbers random(7);
     const std::uint32_t soil = add_paint(scene, {0.40f, 0.33f, 0.25f});

@@ -9,8 +9,8 @@ namespace skybark::scenes {
 /// 36 triangles, 5.5 m a side; the floor's middle is the origin. Red on the left (−X), green on the
 /// right. The boxes stand a centimetre deep in the floor: of faces at one place, rounding would
 /// choose.
-[[nodiscard]] inline gather_scene cornell() {
-    gather_scene scene;
+[[nodiscard]] inline surface_list cornell() {
+    surface_list scene;
     scene.name = "cornell";
     const std::uint32_t white = add_paint(scene, {0.73f, 0.73f, 0.73f});
     const std::uint32_t red = add_paint(scene, {0.63f, 0.065f, 0.05f});

@@ -12,8 +12,8 @@ inline constexpr std::uint32_t park_ground_triangles = 2 * park_ground_quads * p
 /// 202,560 triangles: 20 m of ground, 60 spheres on and above it, 40 boxes a centimetre deep in it
 /// (of faces at one place, rounding would choose). The ground is the first park_ground_triangles of
 /// them.
-[[nodiscard]] inline gather_scene park() {
-    gather_scene scene;
+[[nodiscard]] inline surface_list park() {
+    surface_list scene;
     scene.name = "park";
     random_numbers random(7);
     const std::uint32_t grass = add_paint(scene, {0.36f, 0.44f, 0.21f});

@@ -15,7 +15,7 @@ namespace skybark::scenes {
 /// `count` points, each somewhere in its own share of the area, in the order of the triangles. They
 /// see what the front sees; on surfaces of two sides, one or the other by chance.
 [[nodiscard]] inline std::vector<gather_sample>
-sample_surfaces(const gather_scene& scene, std::uint32_t count, std::uint32_t seed = 3) {
+sample_surfaces(const surface_list& scene, std::uint32_t count, std::uint32_t seed = 3) {
     const auto twice_area = [&](std::size_t i) {
         const gather_triangle& t = scene.triangles[i];
         return static_cast<double>(glm::length(glm::cross(t.b - t.a, t.c - t.a)));

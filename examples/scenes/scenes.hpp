@@ -12,7 +12,7 @@ namespace skybark::scenes {
 inline constexpr const char* scene_names[] = {"cornell", "park", "canopy"};
 
 /// One of scene_names; any other name: the box.
-[[nodiscard]] inline gather_scene scene_named(std::string_view name) {
+[[nodiscard]] inline surface_list scene_named(std::string_view name) {
     return name == "park" ? park() : name == "canopy" ? canopy() : cornell();
 }
 

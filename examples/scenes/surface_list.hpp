@@ -13,26 +13,26 @@
 namespace skybark::scenes {
 
 /// A scene to gather light in.
-struct gather_scene {
+struct surface_list {
     std::string name;
     std::vector<gather_triangle> triangles;
     std::vector<gather_material> materials;
 };
 
-[[nodiscard]] inline std::uint32_t add_material(gather_scene& scene,
+[[nodiscard]] inline std::uint32_t add_material(surface_list& scene,
                                                 const gather_material& material) {
     scene.materials.push_back(material);
     return static_cast<std::uint32_t>(scene.materials.size() - 1);
 }
 
 /// One that only reflects.
-[[nodiscard]] inline std::uint32_t add_paint(gather_scene& scene, glm::vec3 diffuse) {
+[[nodiscard]] inline std::uint32_t add_paint(surface_list& scene, glm::vec3 diffuse) {
     gather_material paint;
     paint.diffuse = diffuse;
     return add_material(scene, paint);
 }
 
-inline void add_triangle(gather_scene& scene, std::uint32_t material, glm::vec3 a, glm::vec3 b,
+inline void add_triangle(surface_list& scene, std::uint32_t material, glm::vec3 a, glm::vec3 b,
                          glm::vec3 c) {
     gather_triangle t;
     t.a = a;
@@ -43,14 +43,14 @@ inline void add_triangle(gather_scene& scene, std::uint32_t material, glm::vec3 
 }
 
 /// Two triangles; the front is where a, b, c, d go round counter-clockwise.
-inline void add_quad(gather_scene& scene, std::uint32_t material, glm::vec3 a, glm::vec3 b,
+inline void add_quad(surface_list& scene, std::uint32_t material, glm::vec3 a, glm::vec3 b,
                      glm::vec3 c, glm::vec3 d) {
     add_triangle(scene, material, a, b, c);
     add_triangle(scene, material, a, c, d);
 }
 
 /// n² quads of a level square, its front up.
-inline void add_ground(gather_scene& scene, std::uint32_t material, float half_width, int n) {
+inline void add_ground(surface_list& scene, std::uint32_t material, float half_width, int n) {
     const auto place = [&](int column, int row) {
         const float step = 2 * half_width / static_cast<float>(n);
         return glm::vec3(static_cast<float>(column) * step - half_width, 0,
@@ -65,7 +65,7 @@ inline void add_ground(gather_scene& scene, std::uint32_t material, float half_w
 }
 
 /// 2 · slices · (stacks − 1) triangles between circles of latitude.
-inline void add_sphere(gather_scene& scene, std::uint32_t material, glm::vec3 centre, float radius,
+inline void add_sphere(surface_list& scene, std::uint32_t material, glm::vec3 centre, float radius,
                        int slices, int stacks) {
     const auto place = [&](int slice, int stack) {
         constexpr double pi = 3.14159265358979323846;
@@ -93,7 +93,7 @@ inline void add_sphere(gather_scene& scene, std::uint32_t material, glm::vec3 ce
 }
 
 /// 12 triangles; `turn` about +Y, rad, from +Z towards +X.
-inline void add_box(gather_scene& scene, std::uint32_t material, glm::vec3 centre,
+inline void add_box(surface_list& scene, std::uint32_t material, glm::vec3 centre,
                     glm::vec3 half_size, float turn) {
     const auto corner = [&](float x, float y, float z) {
         const glm::vec3 p = half_size * glm::vec3(x, y, z);

@@ -75,7 +75,7 @@ class tree_surfaces {
     }
 
     /// More that stands around: add to it before `describe`.
-    [[nodiscard]] gather_scene& surroundings() { return scene_; }
+    [[nodiscard]] surface_list& surroundings() { return scene_; }
 
     /// The scene at rest, in a box that has room for the sway.
     [[nodiscard]] gather::scene_description describe() const {
@@ -152,7 +152,7 @@ class tree_surfaces {
         }
     }
 
-    gather_scene scene_;
+    surface_list scene_;
     std::vector<std::uint32_t> alpha_;
     std::uint32_t leaves_ = 0;
     std::uint32_t count_ = 0;

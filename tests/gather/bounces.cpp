@@ -47,7 +47,7 @@ bounced_light<B> make_light(B& device, const gather::gather_scene<B>& scene,
 /// Along the same axes, by every ray against every triangle in double precision: two bounces of a
 /// lamp, the sky and the sun, at every patch.
 TEST_P(bounces, are_those_of_every_ray_against_every_triangle) {
-    const scenes::gather_scene box = scenes::cornell();
+    const scenes::surface_list box = scenes::cornell();
     bounce_options options;
     options.axes = 12;
     options.gather.seed = 7;
@@ -104,7 +104,7 @@ TEST_P(bounces, are_those_of_every_ray_against_every_triangle) {
 
 /// Patches, samples and light stay on the device: up go commands and parameters, down nothing.
 TEST_P(bounces, keep_all_on_the_device) {
-    const scenes::gather_scene box = scenes::cornell();
+    const scenes::surface_list box = scenes::cornell();
     support::with_device(GetParam(), [&](auto& device) {
         const auto scene = support::make_scene(device, support::describe(box, 0.1f));
         ASSERT_GT(scene.patch_count(), 20000u);
@@ -122,7 +122,7 @@ TEST_P(bounces, keep_all_on_the_device) {
 
 /// Recorded into the caller's stream, the same as one that is submitted here.
 TEST_P(bounces, can_be_recorded) {
-    const scenes::gather_scene box = scenes::cornell();
+    const scenes::surface_list box = scenes::cornell();
     support::with_device(GetParam(), [&](auto& device) {
         const auto scene = support::make_scene(device, support::describe(box));
         bounce_options options;
@@ -143,7 +143,7 @@ TEST_P(bounces, can_be_recorded) {
 }
 
 TEST_P(bounces, begin_with_what_is_emitted_and_can_do_so_again) {
-    const scenes::gather_scene box = scenes::cornell();
+    const scenes::surface_list box = scenes::cornell();
     support::with_device(GetParam(), [&](auto& device) {
         const auto scene = support::make_scene(device, support::describe(box));
         auto light = make_light(device, scene, {});
@@ -163,7 +163,7 @@ TEST_P(bounces, begin_with_what_is_emitted_and_can_do_so_again) {
 /// A first pass from elsewhere, as radiance and as irradiance: the lower of two facing squares is
 /// given light, and the upper one gets the share of it that it should.
 TEST_P(bounces, go_on_from_light_of_the_callers) {
-    scenes::gather_scene squares;
+    scenes::surface_list squares;
     const std::uint32_t paint = scenes::add_paint(squares, vec3(0.5f, 0.25f, 1));
     scenes::add_quad(squares, paint, vec3(0, 0, 0), vec3(0, 0, 1), vec3(1, 0, 1), vec3(1, 0, 0));
     const std::vector<gather_sample> samples{sample_at(vec3(0.5f, 1, 0.5f), vec3(0, -1, 0))};
@@ -187,7 +187,7 @@ TEST_P(bounces, go_on_from_light_of_the_callers) {
 
 /// Colour bleeds: beside the red wall the floor is redder than beside the green one.
 TEST(bounced_light, carries_colour) {
-    const scenes::gather_scene box = scenes::cornell();
+    const scenes::surface_list box = scenes::cornell();
     const std::vector<gather_sample> samples{sample_at(vec3(-2.6f, 0, 0.5f), vec3(0, 1, 0)),
                                              sample_at(vec3(2.6f, 0, 0.5f), vec3(0, 1, 0))};
     cpu::device device;
@@ -204,7 +204,7 @@ TEST(bounced_light, carries_colour) {
 }
 
 TEST_P(bounces, say_what_they_take) {
-    const scenes::gather_scene box = scenes::cornell();
+    const scenes::surface_list box = scenes::cornell();
     support::with_device(GetParam(), [&](auto& device) {
         using B = std::remove_reference_t<decltype(device)>;
         const auto scene = support::make_scene(device, support::describe(box));
@@ -222,7 +222,7 @@ TEST_P(bounces, say_what_they_take) {
 /// Triangles that the device moves between bounces: a screen slides away from before a lamp, with
 /// nothing built anew.
 TEST_P(bounces, follow_triangles_that_move) {
-    scenes::gather_scene stage;
+    scenes::surface_list stage;
     const std::uint32_t lamp = support::add_light(stage, vec3(1));
     const std::uint32_t dark = scenes::add_paint(stage, vec3(0));
     scenes::add_quad(stage, lamp, vec3(0, 2, 0), vec3(1, 2, 0), vec3(1, 2, 1), vec3(0, 2, 1));

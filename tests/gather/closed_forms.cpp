@@ -23,7 +23,7 @@ INSTANTIATE_TEST_SUITE_P(backends, closed_forms, testing::Values("cpu", "opengl"
 
 /// A ball and, on the same centre, samples at every face and every corner of every face.
 struct ball {
-    scenes::gather_scene scene;
+    scenes::surface_list scene;
     std::vector<gather_sample> samples;
 
     ball() {
@@ -67,7 +67,7 @@ TEST_P(closed_forms, of_an_even_sky_on_a_convex_body) {
 /// e (1 − ρ^{k+1}) / (1 − ρ) after k bounces, in three colours of three reflectances, at every
 /// patch, and π times that at samples in the middle and in the corners.
 TEST_P(closed_forms, of_a_closed_box_that_emits) {
-    scenes::gather_scene box;
+    scenes::surface_list box;
     const vec3 emission(1, 2, 0.5f);
     const vec3 reflected(0.3f, 0.5f, 0.9f);
     scenes::add_box(box, support::add_light(box, emission, reflected), vec3(0, 1, 0),
@@ -117,7 +117,7 @@ TEST_P(closed_forms, of_a_closed_box_that_emits) {
 /// bounce; of 48 × 24 facets, whose area is 0.6 % less than the sphere's in the emitting half as in
 /// the other.
 TEST(closed_forms, of_a_sphere_whose_lower_half_emits) {
-    scenes::gather_scene sphere;
+    scenes::surface_list sphere;
     const std::uint32_t wall = scenes::add_paint(sphere, vec3(0.5f));
     const std::uint32_t light = support::add_light(sphere, vec3(1), vec3(0.5f));
     scenes::add_sphere(sphere, wall, vec3(0), 2, 48, 24);
@@ -152,7 +152,7 @@ namespace {
 /// An emitter of radiance 1 over samples, and the irradiance that they get.
 struct form {
     const char* name;
-    scenes::gather_scene scene;
+    scenes::surface_list scene;
     std::vector<gather_sample> samples;
     std::vector<double> irradiance;
 };
@@ -277,8 +277,8 @@ namespace {
 
 /// A room of 3 m, open towards +Z, with a lamp in its ceiling and a box that floats in the middle:
 /// no surface touches the inside of another.
-scenes::gather_scene open_room() {
-    scenes::gather_scene room;
+scenes::surface_list open_room() {
+    scenes::surface_list room;
     const std::uint32_t wall = scenes::add_paint(room, vec3(0.6f));
     const std::uint32_t lamp = support::add_light(room, vec3(5), vec3(0.2f));
     const auto quad = [&](std::uint32_t material, vec3 corner, vec3 right, vec3 up) {
@@ -302,7 +302,7 @@ scenes::gather_scene open_room() {
 /// 1e-3. Both sides are sums over patches: area times what arrives, times what is not reflected;
 /// area times what leaves, times the share of the sky that it sees.
 TEST(closed_forms, of_energy_in_an_open_room) {
-    const scenes::gather_scene room = open_room();
+    const scenes::surface_list room = open_room();
     cpu::device device;
     const auto scene = support::make_scene(device, support::describe(room, 0.15f));
     gather::bounce_options options;

@@ -20,14 +20,14 @@ double luminance(dvec3 light) { return dot(light, dvec3(0.2126, 0.7152, 0.0722))
 
 /// The box, every triangle with a radiance of its own, under a sky that is brighter above.
 struct lit_box {
-    scenes::gather_scene scene = scenes::cornell();
+    scenes::surface_list scene = scenes::cornell();
     std::vector<gather_sample> samples;
     std::vector<double> truth; ///< luminance of the irradiance
 
     static vec3 sky(vec3 direction) { return vec3(1.0f, 1.2f, 1.5f) * (1.2f + direction.y); }
 
     explicit lit_box(std::uint32_t count) {
-        const scenes::gather_scene plain = scenes::cornell();
+        const scenes::surface_list plain = scenes::cornell();
         scene.materials.clear();
         scenes::random_numbers random(5);
         for (gather_triangle& t : scene.triangles) {
@@ -145,7 +145,7 @@ double exponent(std::span<const double> errors) {
 }
 
 /// Of the share of an even sky that points of a scene see, against 16,384 axes of another seed.
-double exponent_under_the_sky(const scenes::gather_scene& of, const char* name) {
+double exponent_under_the_sky(const scenes::surface_list& of, const char* name) {
     cpu::device device;
     const auto scene = support::make_scene(device, support::describe(of));
     const std::vector<vec4> none(scene.patch_count());

@@ -29,7 +29,7 @@ namespace {
 
 /// A lamp in a box whose walls send light too, under a sky.
 struct lit_box {
-    scenes::gather_scene scene = scenes::cornell();
+    scenes::surface_list scene = scenes::cornell();
     std::vector<gather_sample> samples = scenes::sample_surfaces(scene, 333);
 
     lit_box() {
@@ -186,7 +186,7 @@ TEST(final_gather, refuses_states_that_are_damaged_or_of_others) {
     expect(with(state->size() - 1), "content is damaged");
 
     // Another scene, other samples, another sky, and directional light.
-    scenes::gather_scene moved = box.scene;
+    scenes::surface_list moved = box.scene;
     moved.triangles[5].a.x += 0.01f;
     const auto other_scene = support::make_scene(device, support::describe(moved, 0.5f));
     auto other = support::make_gather(device, other_scene, samples, lit_box::options());
@@ -368,7 +368,7 @@ TEST(final_gather, allocates_nothing_when_it_goes_on) {
 
 /// A post's shadow: no sun behind it, E cos elsewhere, none on what faces away; exact to rounding.
 TEST_P(final_gathers, take_the_sun_where_nothing_is_in_its_way) {
-    scenes::gather_scene yard;
+    scenes::surface_list yard;
     const std::uint32_t paint = scenes::add_paint(yard, vec3(0.5f));
     scenes::add_ground(yard, paint, 5, 3);
     scenes::add_box(yard, paint, vec3(0, 1, 0), vec3(0.5f, 1, 0.5f), 0);
@@ -407,7 +407,7 @@ TEST_P(final_gathers, take_the_sun_where_nothing_is_in_its_way) {
 /// c_0 = 2π Y_0 and c_m = π Y_1 n; one of radiance d·n (above) has c_0 = π Y_0, c_m = 2π/3 Y_1 n,
 /// and irradiance 2π/3, which L1 gives as π/4 + π/3 (that is what it lacks).
 TEST_P(final_gathers, keep_directional_light) {
-    scenes::gather_scene ground;
+    scenes::surface_list ground;
     scenes::add_ground(ground, scenes::add_paint(ground, vec3(0.5f)), 1, 1);
     const vec3 normal = glm::normalize(vec3(0.3f, 0.8f, -0.2f));
     // So far above that no axis meets the ground.
@@ -489,7 +489,7 @@ TEST_P(final_gathers, leave_out_samples_that_make_no_sense) {
 /// of layers in one plane the first one counts; samples inside of a solid see its backs, which are
 /// black.
 TEST_P(final_gathers, take_scenes_as_they_come) {
-    scenes::gather_scene odd;
+    scenes::surface_list odd;
     const std::uint32_t first = support::add_light(odd, vec3(1, 0, 0));
     const std::uint32_t second = support::add_light(odd, vec3(0, 1, 0));
     const vec3 a(-50, 3, -50);
@@ -631,7 +631,7 @@ TEST(final_gather, keeps_the_backends_contract) {
 /// Four million samples: a grid on the ground of a small scene, each with the light of its own
 /// place.
 TEST(final_gather, takes_four_million_samples_slow) {
-    scenes::gather_scene yard;
+    scenes::surface_list yard;
     const std::uint32_t lamp = support::add_light(yard, vec3(1));
     scenes::add_quad(yard, lamp, vec3(0, 1, 0), vec3(1, 1, 0), vec3(1, 1, 1), vec3(0, 1, 1));
     constexpr int n = 2048;

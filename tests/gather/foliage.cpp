@@ -30,7 +30,7 @@ constexpr int map_side = 5;
 /// 40 leaves, two triangles each, over a ground; every third leaf has holes. Materials: 0 the
 /// ground, 1 leaves of one side, 2 leaves of two.
 struct clump {
-    scenes::gather_scene scene;
+    scenes::surface_list scene;
     std::vector<std::uint32_t> alpha;
     std::vector<float> texels;
     std::vector<gather_sample> samples;
@@ -254,7 +254,7 @@ TEST_P(foliage, lets_light_through) {
 /// Through a leaf above it, ground gets the leaf's transmission of the sky's light: a large leaf
 /// that lets 0.5 through and reflects none has a radiance of 0.5 L below, so the ground 0.5 π L.
 TEST_P(foliage, tints_the_ground) {
-    scenes::gather_scene roof;
+    scenes::surface_list roof;
     gather_material green;
     green.diffuse = vec3(0);
     green.transmission = vec3(0.1f, 0.5f, 0.05f);

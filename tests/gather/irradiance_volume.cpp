@@ -101,16 +101,16 @@ template <class B>
 }
 
 /// A speck far below, so that there is a scene.
-[[nodiscard]] scenes::gather_scene nothing() {
-    scenes::gather_scene scene;
+[[nodiscard]] scenes::surface_list nothing() {
+    scenes::surface_list scene;
     scenes::add_triangle(scene, scenes::add_paint(scene, vec3(0)), {0, -5000, 0}, {0, -5000, 0.01f},
                          {0.01f, -5000, 0});
     return scene;
 }
 
 /// A plane of ±half m at y = 0 that sends `radiance` up, and reflects nothing.
-[[nodiscard]] scenes::gather_scene emitter(float half, vec3 radiance) {
-    scenes::gather_scene scene;
+[[nodiscard]] scenes::surface_list emitter(float half, vec3 radiance) {
+    scenes::surface_list scene;
     const std::uint32_t light = support::add_light(scene, radiance);
     scenes::add_triangle(scene, light, {-half, 0, -half}, {-half, 0, half}, {half, 0, half});
     scenes::add_triangle(scene, light, {-half, 0, -half}, {half, 0, half}, {half, 0, -half});
@@ -118,8 +118,8 @@ template <class B>
 }
 
 /// Ground with boxes and balls on it, some of which shine.
-[[nodiscard]] scenes::gather_scene garden() {
-    scenes::gather_scene scene;
+[[nodiscard]] scenes::surface_list garden() {
+    scenes::surface_list scene;
     const std::uint32_t light = support::add_light(scene, {2, 1, 0.5f});
     scenes::add_ground(scene, support::add_light(scene, vec3(0.1f, 0.2f, 0.05f)), 8, 12);
     for (int i = 0; i < 5; ++i) {
@@ -154,7 +154,7 @@ struct kept_light {
     shared::irradiance_grid grid;
 };
 template <class B>
-[[nodiscard]] kept_light kept(B& device, const scenes::gather_scene& scene,
+[[nodiscard]] kept_light kept(B& device, const scenes::surface_list& scene,
                               const gather::bounds& box, glm::uvec3 points, std::uint64_t axes,
                               const gather::irradiance_volume_options& options) {
     const auto made = support::make_scene(device, support::describe(scene));
@@ -247,7 +247,7 @@ TEST_P(irradiance_volume, gathers_where_it_is_told_to) {
 TEST_P(irradiance_volume, begins_anew) {
     support::with_device(GetParam(), [](auto& device) {
         using B = std::remove_reference_t<decltype(device)>;
-        const scenes::gather_scene scene_of = garden();
+        const scenes::surface_list scene_of = garden();
         const auto scene = support::make_scene(device, support::describe(scene_of));
         gather::irradiance_volume_options options;
         options.sky = [](vec3 to) { return vec3(1 + to.x, 1, 1 - to.z); };
@@ -268,7 +268,7 @@ TEST_P(irradiance_volume, begins_anew) {
 /// there has them.
 TEST_P(irradiance_volume, keeps_each_point_apart) {
     support::with_device(GetParam(), [](auto& device) {
-        const scenes::gather_scene scene_of = garden();
+        const scenes::surface_list scene_of = garden();
         const glm::uvec3 points(4, 3, 5);
         const auto box = box_of({-6, 0.3f, -6}, {6, 4, 6});
         gather::irradiance_volume_options options;
@@ -455,7 +455,7 @@ TEST(irradiance_texel, is_linear_between_the_points) {
 TEST_P(irradiance_volume, has_directional_light_that_stays_on_the_device) {
     support::with_device(GetParam(), [](auto& device) {
         using B = std::remove_reference_t<decltype(device)>;
-        const scenes::gather_scene scene_of = garden();
+        const scenes::surface_list scene_of = garden();
         const auto scene = support::make_scene(device, support::describe(scene_of));
         std::vector<gather_sample> samples;
         for (const vec3 normal : normals()) {
@@ -522,7 +522,7 @@ TEST_P(irradiance_volume, knows_how_much_of_a_beam_arrives) {
 TEST_P(irradiance_volume, bounces_what_arrives) {
     support::with_device(GetParam(), [](auto& device) {
         using B = std::remove_reference_t<decltype(device)>;
-        scenes::gather_scene floor;
+        scenes::surface_list floor;
         scenes::add_ground(floor, scenes::add_paint(floor, vec3(0.8f, 0.4f, 0.2f)), 4, 4);
         const auto scene = support::make_scene(device, support::describe(floor));
         const std::vector<vec4> half(scene.patch_count(), vec4(0, 0.5f, 0, 0));

@@ -154,7 +154,7 @@ class swaying_scene {
         return model;
     }
     [[nodiscard]] std::unique_ptr<gather::gather_scene<B>> with_lawn(B& device) {
-        scenes::gather_scene& around = surfaces_.surroundings();
+        scenes::surface_list& around = surfaces_.surroundings();
         scenes::add_ground(around, scenes::add_paint(around, {0.2f, 0.3f, 0.1f}), 4, 8);
         return std::make_unique<gather::gather_scene<B>>(
             value_of(gather::gather_scene<B>::create(device, surfaces_.describe())));

@@ -15,8 +15,8 @@ namespace {
 
 class seen_places : public testing::TestWithParam<const char*> {};
 
-scenes::gather_scene some_triangles() {
-    scenes::gather_scene scene;
+scenes::surface_list some_triangles() {
+    scenes::surface_list scene;
     gather_material both;
     both.two_sided = 1;
     both.transmission = glm::vec3(0.3f);
@@ -41,7 +41,7 @@ struct met {
 };
 
 /// Möller and Trumbore's way, in double.
-met nearest(const scenes::gather_scene& scene, dvec3 origin, dvec3 along) {
+met nearest(const scenes::surface_list& scene, dvec3 origin, dvec3 along) {
     met best;
     for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
         const gather_triangle& t = scene.triangles[i];
@@ -64,7 +64,7 @@ met nearest(const scenes::gather_scene& scene, dvec3 origin, dvec3 along) {
 TEST_P(seen_places, are_where_rays_meet_surfaces) {
     support::with_device(GetParam(), [](auto& device) {
         using backend = std::remove_reference_t<decltype(device)>;
-        const scenes::gather_scene scene = some_triangles();
+        const scenes::surface_list scene = some_triangles();
         picture::gather_view from;
         from.eye = {2, 3, 9};
         from.target = {0.3f, -0.2f, 0};
@@ -130,7 +130,7 @@ TEST_P(seen_places, are_where_rays_meet_surfaces) {
 TEST_P(seen_places, are_not_in_holes) {
     support::with_device(GetParam(), [](auto& device) {
         using backend = std::remove_reference_t<decltype(device)>;
-        scenes::gather_scene scene;
+        scenes::surface_list scene;
         const std::uint32_t paint = scenes::add_paint(scene, glm::vec3(0.5f));
         scenes::add_triangle(scene, paint, {-1, -1, 0}, {3, -1, 0}, {-1, 3, 0});
         scene.triangles[0].alpha = 1;

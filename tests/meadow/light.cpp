@@ -38,7 +38,7 @@ meadow::sky_light even(float sky = bright, float sun = sunlight, float cloud = 0
 
 /// A roof of two triangles over the middle of the land, and a black trunk at its edge, on a vertex.
 struct small_stand {
-    scenes::gather_scene surfaces;
+    scenes::surface_list surfaces;
     gather::scene_description what;
 
     small_stand() {
@@ -334,7 +334,7 @@ TEST(meadow_light, allocates_nothing_when_it_is_recorded) {
 
 /// Places in a ball end up outside of it, to the east; others, and those in a leaf, stay.
 TEST(solid_bodies, are_left_eastwards) {
-    scenes::gather_scene scene;
+    scenes::surface_list scene;
     const std::uint32_t wood = scenes::add_paint(scene, vec3(0.2f));
     scenes::add_sphere(scene, wood, {1, 2, 3}, 2, 40, 40);
     scenes::add_sphere(scene, wood, {3.5f, 2, 3}, 2, 40, 40); // overlaps it

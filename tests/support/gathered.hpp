@@ -12,7 +12,7 @@
 
 namespace skybark::support {
 
-[[nodiscard]] inline gather::scene_description describe(const scenes::gather_scene& scene,
+[[nodiscard]] inline gather::scene_description describe(const scenes::surface_list& scene,
                                                         float patch_size = 0) {
     gather::scene_description what;
     what.triangles = scene.triangles;
@@ -22,7 +22,7 @@ namespace skybark::support {
 }
 
 /// A material that emits, and reflects `diffuse`.
-[[nodiscard]] inline std::uint32_t add_light(scenes::gather_scene& scene, glm::vec3 emission,
+[[nodiscard]] inline std::uint32_t add_light(scenes::surface_list& scene, glm::vec3 emission,
                                              glm::vec3 diffuse = glm::vec3(0)) {
     gather_material light;
     light.emission = emission;
@@ -31,7 +31,7 @@ namespace skybark::support {
 }
 
 /// Fronts look the other way.
-inline void turn_inside_out(scenes::gather_scene& scene) {
+inline void turn_inside_out(scenes::surface_list& scene) {
     for (gather_triangle& t : scene.triangles) {
         std::swap(t.b, t.c);
     }
@@ -45,7 +45,7 @@ inline void turn_inside_out(scenes::gather_scene& scene) {
 }
 
 /// Samples at the middles of all triangles, on their fronts.
-[[nodiscard]] inline std::vector<gather_sample> middles_of(const scenes::gather_scene& scene) {
+[[nodiscard]] inline std::vector<gather_sample> middles_of(const scenes::surface_list& scene) {
     std::vector<gather_sample> samples;
     for (const gather_triangle& t : scene.triangles) {
         samples.push_back(

@@ -61,7 +61,7 @@ struct resolved_scene {
     typename B::buffer hits;
     gather::bundle_resolver<B> resolver;
 
-    static result<resolved_scene> create(B& device, const scenes::gather_scene& scene,
+    static result<resolved_scene> create(B& device, const scenes::surface_list& scene,
                                          std::span<const gather_sample> points,
                                          gather::resolve_route route) {
         gather::resolver_options options;
@@ -144,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(many, gather_hits,
 
 /// Share of the rays that meet something where Embree's meet nothing, or the other way round.
 template <class B>
-result<double> peeled_share(B& device, const scenes::gather_scene& scene,
+result<double> peeled_share(B& device, const scenes::surface_list& scene,
                             std::span<const gather_sample> samples,
                             std::span<const gather_hit> expected, const glm::dvec3& direction,
                             std::uint32_t size) {

@@ -6,13 +6,13 @@
 
 namespace skybark::support {
 
-[[nodiscard]] inline first_pass::surfaces surfaces_of(const scenes::gather_scene& scene) {
+[[nodiscard]] inline first_pass::surfaces surfaces_of(const scenes::surface_list& scene) {
     return {scene.triangles, scene.materials, {}};
 }
 
 /// The inside of a cube of side 1: every wall emits `emission` and reflects `reflectance`.
-[[nodiscard]] inline scenes::gather_scene glowing_room(float emission, float reflectance) {
-    scenes::gather_scene room;
+[[nodiscard]] inline scenes::surface_list glowing_room(float emission, float reflectance) {
+    scenes::surface_list room;
     gather_material wall;
     wall.diffuse = glm::vec3(reflectance);
     wall.emission = glm::vec3(emission);
@@ -25,8 +25,8 @@ namespace skybark::support {
 
 /// Two squares of side 1 that face each other at a distance of 1: the first glows, the second is
 /// black. Both are two triangles.
-[[nodiscard]] inline scenes::gather_scene facing_squares() {
-    scenes::gather_scene scene;
+[[nodiscard]] inline scenes::surface_list facing_squares() {
+    scenes::surface_list scene;
     gather_material light;
     light.diffuse = glm::vec3(0);
     light.emission = glm::vec3(1, 2, 3);
@@ -38,8 +38,8 @@ namespace skybark::support {
 }
 
 /// A room with a lamp of its own under the ceiling, a red wall, and a box in the middle: closed.
-[[nodiscard]] inline scenes::gather_scene lit_room() {
-    scenes::gather_scene room = glowing_room(0, 0.6f);
+[[nodiscard]] inline scenes::surface_list lit_room() {
+    scenes::surface_list room = glowing_room(0, 0.6f);
     const std::uint32_t red = scenes::add_paint(room, {0.7f, 0.1f, 0.1f});
     for (gather_triangle& t : room.triangles) {
         if (t.a.x + t.b.x + t.c.x == 0) {

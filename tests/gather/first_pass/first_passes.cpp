@@ -72,7 +72,7 @@ class first_pass_of_a_room : public testing::Test {
         return difference / sum;
     }
 
-    scenes::gather_scene room_ = support::lit_room();
+    scenes::surface_list room_ = support::lit_room();
     cpu::device device_;
     std::optional<gather::gather_scene<cpu::device>> scene_;
     std::vector<patch_table> tables_;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-photon_map traced(const scenes::gather_scene& scene, const first_pass::far_lights& lights,
+photon_map traced(const scenes::surface_list& scene, const first_pass::far_lights& lights,
                   const photon_options& options) {
     auto map = photon_map::trace(surfaces_of(scene), lights, options);
     EXPECT_TRUE(map) << map.error().message;
@@ -100,7 +100,7 @@ TEST(photon_map, squares_exchange_their_form_factor) {
 }
 
 TEST(photon_map, sun_and_sky_light_the_open_ground) {
-    scenes::gather_scene scene;
+    scenes::surface_list scene;
     scenes::add_ground(scene, scenes::add_paint(scene, glm::vec3(0.3f)), 1, 2);
     first_pass::far_lights lights;
     lights.to_sun = glm::normalize(glm::vec3(1, 2, 0));
@@ -121,7 +121,7 @@ TEST(photon_map, sun_and_sky_light_the_open_ground) {
 TEST(photon_map, light_comes_through_leaves) {
     // A leaf over the ground: what is below gets what passes, and the ground's own side nothing
     // but that. The leaf hides the whole sky of a sun straight above.
-    scenes::gather_scene scene;
+    scenes::surface_list scene;
     gather_material leaf;
     leaf.diffuse = {0.1f, 0.2f, 0.05f};
     leaf.transmission = {0.05f, 0.25f, 0.02f};

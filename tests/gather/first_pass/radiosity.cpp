@@ -71,7 +71,7 @@ TEST(radiosity, squares_exchange_their_form_factor) {
 }
 
 TEST(radiosity, sun_and_sky_light_the_open_ground) {
-    scenes::gather_scene scene;
+    scenes::surface_list scene;
     scenes::add_ground(scene, scenes::add_paint(scene, glm::vec3(0.3f)), 1, 2);
     first_pass::far_lights lights;
     lights.to_sun = glm::normalize(glm::vec3(1, 2, 0));
@@ -89,7 +89,7 @@ TEST(radiosity, sun_and_sky_light_the_open_ground) {
 }
 
 TEST(radiosity, light_comes_through_leaves) {
-    scenes::gather_scene scene;
+    scenes::surface_list scene;
     gather_material leaf;
     leaf.diffuse = glm::vec3(0.2f);
     leaf.transmission = glm::vec3(0.3f);
