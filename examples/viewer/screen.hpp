@@ -8,7 +8,7 @@
 //     // Runs `count` stages; record(recorder, i) appends the i-th.
 //     result<void> run(std::size_t count, Record&& record, std::span<double> seconds);
 //     void begin_panel();                         // before ImGui::NewFrame
-//     result<void> show(const image& picture);    // after ImGui::Render
+//     result<void> show(const image& picture);    // after ImGui::Render; the window has pixels
 //     result<shown> read();                       // what was shown last
 //
 // The picture keeps its shape: bars fill what it leaves of the window.

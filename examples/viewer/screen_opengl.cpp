@@ -229,9 +229,6 @@ void screen_opengl::begin_panel() {
 result<void> screen_opengl::show(const opengl::image& picture) {
     const glm::uvec2 size =
         window_ ? window_->framebuffer() : glm::uvec2(options_.width, options_.height);
-    if (size.x == 0 || size.y == 0) {
-        return {};
-    }
     make_image(size);
     const auto width = static_cast<GLint>(size.x);
     const auto height = static_cast<GLint>(size.y);

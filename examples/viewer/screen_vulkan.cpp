@@ -658,9 +658,6 @@ void screen_vulkan::draw_all(const vulkan::image& picture) {
 result<void> screen_vulkan::show(const vulkan::image& picture) {
     const glm::uvec2 size =
         window_ ? window_->framebuffer() : glm::uvec2(options_.width, options_.height);
-    if (size.x == 0 || size.y == 0) {
-        return {};
-    }
     if (auto made = make_image(size); !made) {
         return made;
     }

@@ -12,7 +12,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdio>
 #include <imgui.h>
+#include <unistd.h>
 
 namespace skybark::viewer {
 
@@ -59,6 +61,9 @@ class viewer {
             if (drawn_.any) {
                 session_.pass(scripted() ? script_step : std::min(passed, longest_step));
             }
+            if (hidden()) {
+                continue;
+            }
             if (auto done = show(passed); !done) {
                 return done;
             }
@@ -86,7 +91,8 @@ class viewer {
     [[nodiscard]] bool next_input() {
         if (screen_.window() != nullptr) {
             // Where time stands still, only input changes what is seen.
-            screen_.window()->poll(!scripted() && session_.paused && up_to_date() ? 0.05 : 0);
+            const bool idle = (session_.paused && up_to_date()) || hidden();
+            screen_.window()->poll(!scripted() && idle ? 0.05 : 0);
             if (screen_.window()->closed()) {
                 return false;
             }
@@ -97,6 +103,11 @@ class viewer {
         return !session_.quit;
     }
 
+    /// The window is there, but without a pixel to be seen.
+    [[nodiscard]] bool hidden() const {
+        return screen_.window() != nullptr &&
+               (screen_.window()->framebuffer().x == 0 || screen_.window()->framebuffer().y == 0);
+    }
     /// Of the window, in the pointer's units.
     [[nodiscard]] glm::uvec2 size() const {
         return screen_.window() != nullptr ? screen_.window()->size()
@@ -225,6 +236,9 @@ template <class Screen>
     auto screen = Screen::create(to);
     if (!screen) {
         return failure(screen.error());
+    }
+    if (::isatty(STDERR_FILENO) == 1) { // it takes seconds
+        std::fprintf(stderr, "Growing a meadow of %u trees.\n", asked.scene.what.trees);
     }
     auto scene = meadow::meadow<typename Screen::device_type>::create(
         (*screen)->device(), asked.scene.what, asked.scene.now, asked.scene.from);

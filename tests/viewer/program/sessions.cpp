@@ -117,10 +117,11 @@ class viewer_input : public viewer_sessions {
         FAIL() << name << " does not come.";
     }
     /// What the window shows is what was saved of it.
-    void expect_on(const display& screen, const std::string& name) const {
+    void expect_on(const display& screen, const std::string& name, std::size_t width,
+                   std::size_t height) const {
         const auto saved = pixels(name);
         for (int tenths = 0; tenths < 100; ++tenths) { // the X server takes its time
-            if (screen.corner(320, 200) == saved) {
+            if (screen.corner(width, height) == saved) {
                 return;
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -145,7 +146,7 @@ TEST_P(viewer_input, reaches_the_camera_and_the_panel) {
     save(on, "skybark_0001.png");
     ASSERT_TRUE(act(on, "key h"));
     save(on, "skybark_0002.png");
-    expect_on(screen, "skybark_0002.png");
+    expect_on(screen, "skybark_0002.png", 320, 200);
     ASSERT_TRUE(act(on, "mousedown 1 sleep 0.1 mousemove 250 120 sleep 0.1 mouseup 1"));
     save(on, "skybark_0003.png");
     ASSERT_TRUE(act(on, "mousedown 2 sleep 0.1 mousemove 280 90 sleep 0.1 mouseup 2"));
@@ -162,6 +163,10 @@ TEST_P(viewer_input, reaches_the_camera_and_the_panel) {
     save(on, "skybark_0008.png");
     ASSERT_TRUE(act(on, "key h"));
     save(on, "skybark_0009.png");
+    // Another size: the picture keeps its shape, between bars.
+    ASSERT_TRUE(act(on, "search --name '^Skybark$' windowsize --sync %@ 400 300"));
+    save(on, "skybark_0010.png");
+    expect_on(screen, "skybark_0010.png", 400, 300);
     ASSERT_TRUE(act(on, "key Escape"));
     const outcome done = finish(viewer);
     ASSERT_EQ(done.code, 0) << done.err;
@@ -171,6 +176,16 @@ TEST_P(viewer_input, reaches_the_camera_and_the_panel) {
     EXPECT_GT(different("skybark_0003.png", "skybark_0004.png"), 0.2); // moved aside,
     EXPECT_GT(different("skybark_0004.png", "skybark_0005.png"), 0.2); // and come nearer
     EXPECT_GT(different("skybark_0005.png", "skybark_0009.png"), 0.5); // the sun has set
+    const auto wide = pixels("skybark_0010.png");
+    ASSERT_EQ(wide.size(), 4u * 400 * 300);
+    int seen = 0;
+    for (std::size_t y = 0; y < 300; ++y) {
+        const unsigned char* middle = &wide[4 * (400 * y + 200)];
+        const bool black = middle[0] + middle[1] + middle[2] == 0;
+        EXPECT_TRUE(black || (y >= 25 && y < 275)) << y;
+        seen += black ? 0 : 1;
+    }
+    EXPECT_GT(seen, 200); // of 250 rows; evenings have dark corners
 }
 
 std::string name_of(const testing::TestParamInfo<const char*>& info) { return info.param; }
