@@ -1,4 +1,4 @@
-// What surrounds the things of a scene, and light from near and distance on them: the sun behind clouds
+// What surrounds the things of a scene, and light from near and far on them: the sun behind clouds
 // and what light has been gathered.
 #include "records.glsl"
 #include "shading.glsl"

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5deb6b4d3c1cb1c49fa79ef696f171dec4a44915ed96126ca0c47b661b87b0ec
+// sha256 5ec8de0758d70e963dffe9d337553471ed975e8da03df788f034bdedee37979b
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -11,7 +11,7 @@
 
 namespace skybark::shared {
 
-// What surrounds the things of a scene, and light from near and distance on them: the sun behind clouds
+// What surrounds the things of a scene, and light from near and far on them: the sun behind clouds
 // and what light has been gathered.
 
 // One a picture, beside the scene.
