@@ -3,6 +3,7 @@
 
 #include "support/allocations.hpp"
 #include "support/devices.hpp"
+#include "support/results.hpp"
 
 #include <meadow/stand.hpp>
 
@@ -12,22 +13,11 @@
 #include <set>
 
 using namespace skybark;
+using support::expect_done;
+using support::value_of;
 using meadow::land;
 
 namespace {
-
-template <class T>
-T value_of(result<T> made) {
-    if (!made) {
-        throw std::runtime_error(made.error().message);
-    }
-    return *std::move(made);
-}
-void expect_done(const result<void>& done) {
-    if (!done) {
-        throw std::runtime_error(done.error().message);
-    }
-}
 
 /// An oak, an aspen and a little grass.
 meadow::description small() {
@@ -213,16 +203,33 @@ TEST(stand, light_follows_the_sway) {
     sway(device, stand, 60);
     std::vector<gather_triangle> moved;
     expect_done(stand.describe_light(device, moved));
+    const auto materials = stand.light_materials();
+    const auto apart = [](glm::vec3 a, glm::vec3 b) {
+        return static_cast<double>(glm::distance(a, b));
+    };
+    bool last_was_right = false;
     double most = 0;
+    double most_wood = 0;
     double area_at_rest = 0;
     double area = 0;
     for (std::size_t i = 0; i < rest.size(); ++i) {
         ASSERT_EQ(rest[i].material, moved[i].material);
-        most = std::max(most, static_cast<double>(glm::distance(rest[i].a, moved[i].a)));
+        const bool wood = materials[rest[i].material].two_sided == 0;
+        if (!wood && !last_was_right) {
+            // A right half goes from the stalk's end to the tip's. Its quadrilateral reaches 2^¼ −
+            // 1 of half its length beyond both; where the leaf hangs moves with the twig alone.
+            const auto hangs = [](const gather_triangle& t) {
+                return glm::mix(t.a, t.c, 0.18920712f / 2.37841423f);
+            };
+            most = std::max(most, apart(hangs(rest[i]), hangs(moved[i])));
+        }
+        last_was_right = !wood && !last_was_right;
+        most_wood = wood ? std::max(most_wood, apart(rest[i].a, moved[i].a)) : most_wood;
         area_at_rest += area_of(rest[i]);
         area += area_of(moved[i]);
     }
     EXPECT_GT(most, 0.05); // m
+    EXPECT_GT(most_wood, 0.005);
     EXPECT_LT(most, 10);
     EXPECT_NEAR(area, area_at_rest, 0.02 * area_at_rest);
     // What is recorded begins where it is told to, and leaves the rest alone.
