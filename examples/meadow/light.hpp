@@ -237,11 +237,15 @@ class light {
     [[nodiscard]] static std::vector<gather_sample> inner_vertices(const land& ground,
                                                                    const solid_bodies& wood) {
         constexpr std::size_t count = std::size_t{land::points} * land::points;
-        constexpr glm::vec3 foot(0, 0.2f, 0); // trees need not reach down to the ground
+        // Trees need not reach down to the ground, and are widest there.
+        constexpr float heights[] = {0.3f, 0.1f, 0};
         std::vector<gather_sample> samples(count);
         const land_mesh mesh = ground.mesh();
         for (std::size_t i = 0; i < count; ++i) {
-            const glm::vec3 at = wood.outside(mesh.vertices[i].position + foot);
+            glm::vec3 at = mesh.vertices[i].position;
+            for (const float height : heights) {
+                at.x = wood.outside(at + glm::vec3(0, height, 0)).x;
+            }
             samples[i].position = {at.x, ground.light_height(at.x, at.z), at.z};
             samples[i].normal = ground.normal(at.x, at.z);
         }
