@@ -67,6 +67,7 @@ TEST_F(viewer_session, time_stands_still_after_space) {
 }
 
 TEST_F(viewer_session, r_brings_camera_and_time_back_but_not_the_sliders) {
+    one.pass(2);
     (void)play("drag left 30 -20\nset wind 11\nkey R");
     EXPECT_EQ(one.view, at_first);
     EXPECT_EQ(one.time, 0);
