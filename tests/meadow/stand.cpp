@@ -13,9 +13,9 @@
 #include <set>
 
 using namespace skybark;
+using meadow::land;
 using support::expect_done;
 using support::value_of;
-using meadow::land;
 
 namespace {
 
