@@ -3,6 +3,7 @@
 
 #include "support/allocations.hpp"
 #include "support/devices.hpp"
+#include "support/results.hpp"
 #include "support/test_trees.hpp"
 
 #include <scenes/random.hpp>
@@ -15,21 +16,10 @@
 #include <memory>
 
 using namespace skybark;
+using support::expect_done;
+using support::value_of;
 
 namespace {
-
-template <class T>
-T value_of(result<T> made) {
-    if (!made) {
-        throw std::runtime_error(made.error().message);
-    }
-    return *std::move(made);
-}
-void expect_done(const result<void>& done) {
-    if (!done) {
-        throw std::runtime_error(done.error().message);
-    }
-}
 
 const glm::vec3 to_sun = glm::normalize(glm::vec3(0.5f, 1, 0.3f));
 const glm::vec3 sunlight(3, 2.8f, 2.4f);

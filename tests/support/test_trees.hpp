@@ -87,4 +87,15 @@ struct test_tree {
     return {"wild scan " + std::to_string(seed), built(segments)};
 }
 
+/// Every species, the scan that there is or what stands for it, and a wild one. Made once.
+[[nodiscard]] inline const std::vector<test_tree>& all_trees() {
+    static const std::vector<test_tree> all = [] {
+        auto trees = grown_trees();
+        trees.push_back(scanned_tree());
+        trees.push_back(wild_scan(1));
+        return trees;
+    }();
+    return all;
+}
+
 } // namespace skybark::support

@@ -12,6 +12,7 @@
 using namespace skybark;
 using glm::dvec3;
 using kernels::branch_frame;
+using support::all_trees;
 using support::open_opengl;
 using support::open_vulkan;
 using trees::branch_mesh_options;
@@ -20,16 +21,6 @@ using trees::mesh_form;
 namespace reference = skybark::conformance::reference;
 
 namespace {
-
-const std::vector<support::test_tree>& all_trees() {
-    static const std::vector<support::test_tree> all = [] {
-        auto trees = support::grown_trees();
-        trees.push_back(support::scanned_tree());
-        trees.push_back(support::wild_scan(1));
-        return trees;
-    }();
-    return all;
-}
 
 struct variant {
     branch_frame frame;

@@ -15,6 +15,7 @@
 using namespace skybark;
 using glm::dvec3;
 using kernels::branch_frame;
+using support::all_trees;
 using trees::detailed_mesh_options;
 using trees::view_detail;
 
@@ -22,16 +23,6 @@ namespace {
 
 template <backend B>
 using detailed = trees::detailed_branch_mesh<B>;
-
-const std::vector<support::test_tree>& all_trees() {
-    static const std::vector<support::test_tree> all = [] {
-        auto trees = support::grown_trees();
-        trees.push_back(support::scanned_tree());
-        trees.push_back(support::wild_scan(1));
-        return trees;
-    }();
-    return all;
-}
 
 const support::test_tree& tree_called(std::string_view name) {
     for (const support::test_tree& tree : all_trees()) {

@@ -12,22 +12,13 @@
 
 using namespace skybark;
 using glm::dvec3;
+using support::all_trees;
 using trees::leaf_mesh_options;
 using trees::mesh_form;
 
 namespace reference = skybark::conformance::reference;
 
 namespace {
-
-const std::vector<support::test_tree>& all_trees() {
-    static const std::vector<support::test_tree> all = [] {
-        auto trees = support::grown_trees();
-        trees.push_back(support::scanned_tree());
-        trees.push_back(support::wild_scan(1));
-        return trees;
-    }();
-    return all;
-}
 
 std::vector<leaf> some_leaves(const trees::skeleton& on, std::size_t most) {
     trees::leaf_options options;

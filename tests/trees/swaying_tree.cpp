@@ -4,6 +4,7 @@
 #include "support/allocations.hpp"
 #include "support/closed_surface.hpp"
 #include "support/devices.hpp"
+#include "support/results.hpp"
 #include "support/surface_topology.hpp"
 #include "support/test_trees.hpp"
 
@@ -17,23 +18,12 @@
 
 using namespace skybark;
 using glm::vec3;
+using support::expect_done;
+using support::value_of;
 using trees::skeleton;
 using trees::swaying_tree;
 
 namespace {
-
-template <class T>
-T value_of(result<T> made) {
-    if (!made) {
-        throw std::runtime_error(made.error().message);
-    }
-    return *std::move(made);
-}
-void expect_done(const result<void>& done) {
-    if (!done) {
-        throw std::runtime_error(done.error().message);
-    }
-}
 
 /// A tree with its leaves.
 struct plant {
