@@ -23,7 +23,7 @@
 // device in software than the time.
 //
 // What takes long without need runs only if the filter names its particles and volume, such as
-// --benchmark_filter='clouds/relight/.*/1000000_128'. plot_relight makes a picture of the results.
+// --benchmark_filter='clouds/relight/.*/1000000_128'. docs/figures/make draws the results.
 
 #include "devices.hpp"
 #include "floor.hpp"
