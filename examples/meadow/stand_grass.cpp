@@ -217,11 +217,21 @@ class sower {
     }
 
     void add_flowers(glm::vec2 corner, float size, float here, float share, std::size_t kind) {
-        const float part = std::max(0.0f, share - 0.17f);
-        for (int n = number(2.2f * here * part); n > 0; --n) {
-            const glm::vec2 place = within(corner, size);
+        const float far = distance(corner);
+        const float part = std::max(0.0f, share - 0.17f) * std::clamp(2 - far / 40, 0.0f, 1.0f);
+        // Alone on their stems where that can be seen, in small groups farther away.
+        const int together = far < 18 ? 1 : 5;
+        for (int n = number(2.2f * here * part); n > 0;) {
+            const glm::vec2 middle = within(corner, size);
             const float tall = random_.between(0.42f, 0.62f);
-            add_flower(place, add_stem(place, tall, 0.001f, 0.008f), tall, kind);
+            const std::uint32_t stem = add_stem(middle, tall, 0.001f, 0.008f);
+            add_flower(middle, stem, tall, kind);
+            --n;
+            for (int i = 1; i < together && n > 0; ++i, --n) {
+                const float aside = random_.between(-0.25f, 0.25f);
+                add_flower(middle + glm::vec2(aside, random_.between(-0.25f, 0.25f)), stem, tall,
+                           kind);
+            }
         }
     }
 
