@@ -184,19 +184,21 @@ template <class Device, class Bins>
     if (planes == nullptr || !bins.fill(device, scratch, elements, what)) {
         return false;
     }
-    sums::with_step_from_int32(what.format, how.share, [&]<class Step>() {
-        auto* const out = reinterpret_cast<typename Step::out*>(to.data());
-        std::atomic<std::uint32_t> next{0};
-        device.parallel(workers, [&](std::uint32_t worker) {
-            const layer_sums own{planes + worker * plane, what.width, what.height, stride};
-            std::fill_n(own.sums, plane, 0);
-            for (std::uint32_t z = next++; z < what.depth; z = next++) {
-                bins.add(z, own);
-                sums::down_rows<Step>(
-                    sums::sheet<std::int32_t>{own.sums, stride, what.height, what.width},
-                    {out + z * layer, what.width, what.height, what.width}, how);
-            }
-        });
+    const sums::summer sum = sums::summer_of_int32<true>(what.format, how.share);
+    if (sum.down == nullptr) {
+        return true;
+    }
+    const std::uint64_t layer_bytes = layer * bytes_per_voxel(what.format);
+    std::atomic<std::uint32_t> next{0};
+    device.parallel(workers, [&](std::uint32_t worker) {
+        const layer_sums own{planes + worker * plane, what.width, what.height, stride};
+        std::fill_n(own.sums, plane, 0);
+        for (std::uint32_t z = next++; z < what.depth; z = next++) {
+            bins.add(z, own);
+            sum.down({reinterpret_cast<std::byte*>(own.sums), to.data() + z * layer_bytes, stride,
+                      what.width, what.height, what.width},
+                     how);
+        }
     });
     return true;
 }

@@ -205,37 +205,90 @@ void each_of_row(const typename Step::in* from, typename Step::out* to, std::uin
     }
 }
 
-/// The volumes' voxels with the types that their formats have, and the share: calls
-/// `work.template operator()<step<…>>()`. Nothing where the contract has no such scan.
-template <class In, class Out, class Work>
-void with_share(scan_share share, Work&& work) {
-    if (share == scan_share::whole) {
-        work.template operator()<step<In, Out, scan_share::whole>>();
-    } else if (share == scan_share::none) {
-        work.template operator()<step<In, Out, scan_share::none>>();
-    } else if constexpr (!std::is_same_v<Out, std::int32_t>) {
-        work.template operator()<step<In, Out, scan_share::half>>();
+/// Rows of two volumes, whatever their voxels are: what is summed and where to.
+struct two_sheets {
+    std::byte* from;
+    std::byte* to;
+    std::uint64_t from_stride; ///< voxels from a row to the next
+    std::uint64_t to_stride;
+    std::uint32_t rows;
+    std::uint32_t columns;
+};
+
+/// What sums voxels of certain types: one call for many of them, so that all types share the rest
+/// of a scan. None where the contract has no such scan.
+struct summer {
+    void (*down)(const two_sheets& rows, const volume_scan& how) = nullptr;
+    /// Sums along each row or, without an axis, takes every voxel for itself.
+    void (*across)(const two_sheets& rows, const volume_scan& how) = nullptr;
+};
+
+template <class Step, class In>
+void sum_down(const two_sheets& rows, const volume_scan& how) {
+    down_rows<Step>(
+        sheet<In>{reinterpret_cast<In*>(rows.from), rows.from_stride, rows.rows, rows.columns},
+        {reinterpret_cast<typename Step::out*>(rows.to), rows.to_stride, rows.rows, rows.columns},
+        how);
+}
+
+template <class Step>
+void sum_across(const two_sheets& rows, const volume_scan& how) {
+    const auto* from = reinterpret_cast<const typename Step::in*>(rows.from);
+    auto* to = reinterpret_cast<typename Step::out*>(rows.to);
+    for (std::uint32_t i = 0; i < rows.rows; ++i) {
+        if (how.axis == scan_axis::x) {
+            along_row<Step>(from, to, rows.columns, how.direction == scan_direction::descending,
+                            how.scale);
+        } else {
+            each_of_row<Step>(from, to, rows.columns, how.scale);
+        }
+        from += rows.from_stride;
+        to += rows.to_stride;
     }
 }
-template <class Work>
-void with_step_from_int32(volume_format to, scan_share share, Work&& work) {
-    if (to == volume_format::int32) {
-        with_share<std::int32_t, std::int32_t>(share, work);
-    } else if (to == volume_format::float32) {
-        with_share<std::int32_t, float>(share, work);
+
+/// `Clear` is for sums down rows that are scratch, cleared as they are read.
+template <class Step, bool Clear>
+[[nodiscard]] summer summer_with() {
+    if constexpr (Clear) {
+        return {&sum_down<Step, typename Step::in>, nullptr};
     } else {
-        with_share<std::int32_t, half>(share, work);
+        return {&sum_down<Step, const typename Step::in>, &sum_across<Step>};
     }
 }
-template <class Work>
-void with_step(volume_format from, volume_format to, scan_share share, Work&& work) {
-    if (from == volume_format::int32) {
-        with_step_from_int32(to, share, work);
-    } else if (from == volume_format::float32 && to == volume_format::float32) {
-        with_share<float, float>(share, work);
-    } else if (from == volume_format::float32 && to == volume_format::float16) {
-        with_share<float, half>(share, work);
+template <class In, class Out, bool Clear>
+[[nodiscard]] summer summer_of(scan_share share) {
+    if (share == scan_share::whole) {
+        return summer_with<step<In, Out, scan_share::whole>, Clear>();
     }
+    if (share == scan_share::none) {
+        return summer_with<step<In, Out, scan_share::none>, Clear>();
+    }
+    if constexpr (std::is_same_v<Out, std::int32_t>) {
+        return {};
+    } else {
+        return summer_with<step<In, Out, scan_share::half>, Clear>();
+    }
+}
+template <bool Clear>
+[[nodiscard]] summer summer_of_int32(volume_format to, scan_share share) {
+    if (to == volume_format::int32) {
+        return summer_of<std::int32_t, std::int32_t, Clear>(share);
+    }
+    return to == volume_format::float32 ? summer_of<std::int32_t, float, Clear>(share)
+                                        : summer_of<std::int32_t, half, Clear>(share);
+}
+[[nodiscard]] inline summer summer_of(volume_format from, volume_format to, scan_share share) {
+    if (from == volume_format::int32) {
+        return summer_of_int32<false>(to, share);
+    }
+    if (from == volume_format::float32 && to == volume_format::float32) {
+        return summer_of<float, float, false>(share);
+    }
+    if (from == volume_format::float32 && to == volume_format::float16) {
+        return summer_of<float, half, false>(share);
+    }
+    return {};
 }
 
 } // namespace sums
@@ -244,44 +297,38 @@ void with_step(volume_format from, volume_format to, scan_share share, Work&& wo
 template <class Device>
 void scan_volume(Device& device, const volume& from, const volume& to, const volume_scan& how) {
     const volume_description what = from.description();
+    const sums::summer sum = sums::summer_of(what.format, to.description().format, how.share);
+    if (sum.down == nullptr) {
+        return;
+    }
+    const std::uint64_t in_bytes = bytes_per_voxel(what.format);
+    const std::uint64_t out_bytes = bytes_per_voxel(to.description().format);
     const std::uint64_t layer = std::uint64_t{what.width} * what.height;
-    const bool descending = how.direction == scan_direction::descending;
-    sums::with_step(what.format, to.description().format, how.share, [&]<class Step>() {
-        const auto* const in = reinterpret_cast<const typename Step::in*>(from.data());
-        auto* const out = reinterpret_cast<typename Step::out*>(to.data());
-        using in_type = const typename Step::in;
-        if (how.axis == scan_axis::y) {
-            device.for_pieces(what.depth, 1, [&](std::uint64_t first, std::uint64_t count) {
-                for (std::uint64_t at = first * layer; at < (first + count) * layer; at += layer) {
-                    sums::down_rows<Step>(
-                        sums::sheet<in_type>{in + at, what.width, what.height, what.width},
-                        {out + at, what.width, what.height, what.width}, how);
-                }
-            });
-        } else if (how.axis == scan_axis::z) {
-            device.for_pieces(what.height, 1, [&](std::uint64_t first, std::uint64_t count) {
-                for (std::uint64_t at = first * what.width; at < (first + count) * what.width;
-                     at += what.width) {
-                    sums::down_rows<Step>(
-                        sums::sheet<in_type>{in + at, layer, what.depth, what.width},
-                        {out + at, layer, what.depth, what.width}, how);
-                }
-            });
-        } else {
-            const std::uint64_t rows = std::uint64_t{what.height} * what.depth;
-            device.for_pieces(rows, 16, [&](std::uint64_t first, std::uint64_t count) {
-                for (std::uint64_t row = first * what.width; row < (first + count) * what.width;
-                     row += what.width) {
-                    if (how.axis == scan_axis::x) {
-                        sums::along_row<Step>(in + row, out + row, what.width, descending,
-                                              how.scale);
-                    } else {
-                        sums::each_of_row<Step>(in + row, out + row, what.width, how.scale);
-                    }
-                }
-            });
-        }
-    });
+    const auto sheets_from = [&](std::uint64_t at, std::uint64_t stride, std::uint64_t rows) {
+        return sums::two_sheets{from.data() + at * in_bytes,
+                                to.data() + at * out_bytes,
+                                stride,
+                                stride,
+                                static_cast<std::uint32_t>(rows),
+                                what.width};
+    };
+    if (how.axis != scan_axis::y && how.axis != scan_axis::z) {
+        device.for_pieces(std::uint64_t{what.height} * what.depth, 16,
+                          [&](std::uint64_t first, std::uint64_t count) {
+                              sum.across(sheets_from(first * what.width, what.width, count), how);
+                          });
+        return;
+    }
+    // The rows of a layer along y, one row of each layer along z.
+    const bool along_y = how.axis == scan_axis::y;
+    device.for_pieces(along_y ? what.depth : what.height, 1,
+                      [&](std::uint64_t first, std::uint64_t count) {
+                          for (std::uint64_t i = first; i < first + count; ++i) {
+                              sum.down(along_y ? sheets_from(i * layer, what.width, what.height)
+                                               : sheets_from(i * what.width, layer, what.depth),
+                                       how);
+                          }
+                      });
 }
 
 } // namespace skybark::cpu
