@@ -126,6 +126,15 @@ class viewer {
                 return done;
             }
         }
+        // Windows of Dear ImGui's find their size in the first frames, and are not seen until then.
+        for (; settling_ > 0; --settling_) {
+            draw_gui();
+        }
+        draw_gui();
+        return screen_.show(scene_.picture());
+    }
+
+    void draw_gui() {
         screen_.begin_panel();
         if (scripted()) {
             gui_.without_input(size(), script_step);
@@ -135,7 +144,6 @@ class viewer {
             draw_panel(session_, tells_, asked_.scene.what.bounces);
         }
         ImGui::Render();
-        return screen_.show(scene_.picture());
     }
 
     /// The stages of a frame, and what they took.
@@ -227,6 +235,7 @@ class viewer {
     drawn drawn_;
     std::array<double, meadow::stages.size()> seconds_{};
     report tells_;
+    int settling_ = 2;
 };
 
 /// Opens a screen, grows the meadow and shows it until somebody has seen enough.

@@ -90,9 +90,8 @@ inline bool windows_are_required() { return std::getenv("SKYBARK_REQUIRE_GLFW") 
 class program : public tests::tool {
   protected:
     /// A meadow that is soon grown and soon drawn.
-    static inline const words small{"--trees",        "1",  "--grass",   "0.02",
-                                    "--directions",   "1",  "--bounces", "1",
-                                    "--cloud-voxels", "16", "--cloud",   "0.1"};
+    static inline const words small{"--trees",        "1",  "--grass", "0.02", "--directions", "1",
+                                    "--cloud-voxels", "16", "--cloud", "0.1"};
 
     /// What starts the viewer with these, in the folder, on a display (none where it is empty).
     [[nodiscard]] words command(const std::string& on, const words& arguments) const {
