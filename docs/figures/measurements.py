@@ -1,4 +1,4 @@
-"""What `docs/figures/make --measure` runs, and where it keeps what they say. All commands are here, and nowhere else.
+"""What `docs/figures/make --measure` runs, and where it keeps what that says. All commands are here.
 
 {out} stands for the file that a command writes, {folder} for one that is thrown away.
 """
@@ -11,9 +11,9 @@ def benchmark(pattern, repetitions):
             "--benchmark_out={out}")
 
 
-def meadow(backend):
-    return (f"{TOOL} meadow --backend {backend} --seconds 0.25 --fps 12 -o {{folder}}/meadow_%04d.png "
-            "--stats {out} --quiet")
+def meadow(backend, size="1280x720", seconds=0.25, fps=12):
+    return (f"{TOOL} meadow --backend {backend} --size {size} --seconds {seconds} --fps {fps} "
+            "-o {folder}/meadow_%04d.png --stats {out} --quiet")
 
 
 # {name: (file in docs/figures/data, [command, …])}: what several commands say goes into one file.
@@ -21,6 +21,9 @@ MEASUREMENTS = {
     "meadow_cpu": ("meadow_cpu.json", [meadow("cpu")]),
     "meadow_opengl": ("meadow_opengl.json", [meadow("opengl")]),
     "meadow_vulkan": ("meadow_vulkan.json", [meadow("vulkan")]),
+    # Where there is a graphics card: measured if named.
+    "meadow_opengl_gpu": ("meadow_opengl_gpu.json", [meadow("opengl", "1920x1080", 4, 30)]),
+    "meadow_vulkan_gpu": ("meadow_vulkan_gpu.json", [meadow("vulkan", "1920x1080", 4, 30)]),
     "relight": ("relight.json", [
         benchmark("clouds/(floor|relight/(harris|impulse_scan|impulse_scan_erf)_cpu/"
                   "(9382|32914|60134)_)", 3),

@@ -53,8 +53,8 @@ STAGES = [("sway", "wind and sway"), ("mesh", "all triangles"), ("clouds", "clou
 MEMORY = [("stand", "trees and grass"), ("clouds", "clouds"), ("light", "light"),
           ("picture", "images that are drawn into")]
 MEADOW_FILES = [("meadow_cpu.json", "`cpu`"), ("meadow_opengl.json", "`opengl`"),
-                ("meadow_vulkan.json", "`vulkan`"), ("meadow_vulkan_gpu.json", "`vulkan`"),
-                ("meadow_opengl_gpu.json", "`opengl`")]
+                ("meadow_vulkan.json", "`vulkan`"), ("meadow_opengl_gpu.json", "`opengl`"),
+                ("meadow_vulkan_gpu.json", "`vulkan`")]
 
 
 def seconds(value):
@@ -270,7 +270,7 @@ def headline():
               f"{figure(floor)} % of writing the bytes and nothing else", "branch"],
              ["one step of sway, 15,000 joints, one core", f"{figure(swayed)} ms",
               f"{1e6 * swayed / 15000:.0f} ns a joint", "sway"]]
-    return table(["on `cpu`", "", "beside it", "`docs/figures/make --measure …`"],
+    return table(["on `cpu`", "figure", "beside it", "`docs/figures/make --measure …`"],
                  [[*line[:3], f"`{line[3]}`"] for line in lines]) + [
         "", f"<sub>{clouds.context['date']}, {clouds.context['machine']}, medians</sub>"]
 
