@@ -31,11 +31,18 @@ def table(head, rows):
     return [lines[0], "|---" * len(head) + "|", *lines[1:]]
 
 
+def short_name(backend, device):
+    """Of a device. Mesa's driver for Vulkan, lavapipe, names its device after that for OpenGL."""
+    name = re.split(",| [(]", device)[0]
+    return "lavapipe" if backend == "vulkan" and name == "llvmpipe" else name
+
+
 def on(context, backend):
     """The backend, and the device that it ran on."""
-    driver = context.get("drivers", {}).get(backend)
-    return f"`{backend}`" if driver is None or backend == "cpu" else (
-        f"`{backend}` ({re.split(',| [(]', driver)[0]})")
+    device = context.get("drivers", {}).get(backend)
+    if device is None or backend == "cpu":
+        return f"`{backend}`"
+    return f"`{backend}` ({short_name(backend, device)})"
 
 
 def measured(context, measurement):
@@ -87,7 +94,7 @@ def meadow():
     reports = [(read_stats(file), title) for file, title in MEADOW_FILES]
     # A software driver that wasn't measured yet has its column; a GPU only where there was one.
     reports = [(r, t) for i, (r, t) in enumerate(reports) if r or i < 3]
-    heads = [f"{title}, {report['device']}" if report else title for report, title in reports]
+    heads = [f"{title} ({short_name(r['backend'], r['device'])})" if r else title for r, title in reports]
     frames = [sum(stage_seconds(r, s) for s, _ in STAGES) if r else None for r, _ in reports]
     rows = [[f"{words} (`{stage}`)", *(seconds(stage_seconds(r, stage)) for r, _ in reports)]
             for stage, words in STAGES]
