@@ -166,8 +166,6 @@ struct band_memory {
     float* depths;          ///< z, and the distance of the nearest hit; its sign: where one looks
     std::uint32_t* nearest; ///< the triangle of that hit
     std::uint32_t* numbers; ///< of samples in the batch
-    placed_sample* spare;   ///< samples of a piece on their way
-    std::uint32_t* spare_bands;
 };
 
 } // namespace skybark::cpu::bundles

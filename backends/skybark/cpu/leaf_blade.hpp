@@ -16,7 +16,6 @@ namespace lanes {
 
 using u4 = std::uint32_t __attribute__((vector_size(16)));
 
-[[nodiscard]] inline u4 splat_bits(std::uint32_t x) { return u4{x, x, x, x}; }
 [[nodiscard]] inline u4 as_bits(f4 v) { return reinterpret_cast<u4>(v); }
 
 /// Below 2^31, so that the signed conversion will do.

@@ -123,10 +123,6 @@ class bounced_light {
         return device_->download(*from.buffer, from.offset, std::as_writable_bytes(radiance));
     }
     /// What arrived at each patch in the last bounce, W/m², and its standard error: a vec4 each.
-    [[nodiscard]] result<void> read_irradiance(std::span<glm::vec4> irradiance) {
-        assert(irradiance.size() == scene_->patch_count() && "one vec4 a patch");
-        return read_back<B, glm::vec4>(*device_, irradiance_, irradiance);
-    }
     [[nodiscard]] buffer_view<B> irradiance() const { return view<B>(irradiance_); }
 
     [[nodiscard]] std::uint32_t bounces() const noexcept { return bounces_; }

@@ -157,15 +157,6 @@ struct patch_layout {
 
 } // namespace detail
 
-/// Bytes of device memory that a scene takes: 48 a triangle and 16 for its table, 52 a patch.
-[[nodiscard]] inline std::uint64_t scene_bytes(std::uint64_t triangles, std::uint64_t patches,
-                                               std::uint64_t materials, std::uint64_t alpha_words) {
-    return triangles * (sizeof(gather_triangle) + sizeof(patch_table)) +
-           materials * sizeof(gather_material) +
-           patches * (sizeof(std::uint32_t) + sizeof(gather_sample) + sizeof(glm::vec4)) +
-           std::max<std::uint64_t>(alpha_words, 4) * 4;
-}
-
 template <backend B>
 requires maps<B, kernels::patch_samples> && maps<B, kernels::surface_light>
 class gather_scene {

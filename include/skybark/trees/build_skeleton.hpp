@@ -158,10 +158,6 @@ struct child_lists {
     return glm::normalize(parent * rotation_from_up(local));
 }
 
-[[nodiscard]] inline glm::dvec3 up_axis(const glm::quat& q) {
-    return glm::normalize(glm::dquat(q)) * glm::dvec3(0, 1, 0);
-}
-
 /// Whether the child's base is close enough to the parent's tip for one ring to serve both.
 [[nodiscard]] inline bool joins(const segment& parent, const segment& child) {
     const double gap = glm::length(glm::dvec3(child.base) - glm::dvec3(parent.tip));
