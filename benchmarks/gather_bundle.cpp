@@ -3,7 +3,7 @@
 //   gather/bundle/METHOD_BACKEND/SCENE_SAMPLES
 //       METHOD   resolve    exact at each point, as the backend does it fastest
 //                composed   the same, of the patterns that all backends have
-//                peel       the document's layers of depth, in pictures of 1024 by 1024 pixels
+//                peel       the paper's layers of depth, in pictures of 1024 by 1024 pixels
 //       SCENE    cornell, park, canopy: examples/scenes
 //   gather/bundle/embree_…  rays traced one by one instead: benchmarks/embree/gather_bundle.cpp
 //

@@ -96,7 +96,7 @@ vec3 place_of(light_grid grid, vec3 cells)
 }
 
 // What light a particle takes out along a line that passes its centre at the squared distance d2
-// (m²): −ln G. `light` is 0 for extinction alone, 1 for the continuum limit, 2 for the document's
+// (m²): −ln G. `light` is 0 for extinction alone, 1 for the continuum limit, 2 for the paper's
 // product (eq. 7); `forward` is the part of the energy that goes on forward, or P(0).
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
@@ -123,7 +123,7 @@ int bottom_row(float y, float radius)
     return int(floor(y - radius - 0.5f));
 }
 
-// What part of a particle lies above the middle of a row. Profile 0 is the document's step: all of
+// What part of a particle lies above the middle of a row. Profile 0 is the paper's step: all of
 // it from the top row down; 1 integrates through the body.
 float part_above(uint profile, int row, float y, float radius, float sigmas)
 {

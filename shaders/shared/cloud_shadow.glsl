@@ -16,7 +16,7 @@ vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
     return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 
-// The light that an attenuation leaves. Negative attenuation (the document's product can amplify)
+// The light that an attenuation leaves. Negative attenuation (the paper's product can amplify)
 // is light above 1; beyond 1e26 it stays a number.
 float cloud_light(float attenuation) {
     return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);

@@ -217,7 +217,7 @@ TEST_P(drawing, a_puff_has_the_profile_of_a_gaussian) {
     });
 }
 
-/// The document's own form is a tau P I, and does not saturate.
+/// The paper's own form is a tau P I, and does not saturate.
 TEST_P(drawing, the_document_scatters_in_proportion_to_the_depth) {
     support::with_device(GetParam(), [](auto& device) {
         using B = std::remove_reference_t<decltype(device)>;

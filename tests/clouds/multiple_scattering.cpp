@@ -311,7 +311,7 @@ fluence_error scored(Device& device, const traced_cloud& cloud, const scattering
     });
 }
 
-/// The document's product (eq. 7), with the phase function straight on.
+/// The paper's product (eq. 7), with the phase function straight on.
 fluence_error product_scored(cpu::device& device, const traced_cloud& cloud,
                              const scattering_medium& medium) {
     attenuation_options light;

@@ -540,7 +540,7 @@ TEST_P(final_gathers, take_no_samples) {
     });
 }
 
-/// Layers as the document has them: off by pixels, so that light is nearly the same. Of the
+/// Layers as the paper has them: off by pixels, so that light is nearly the same. Of the
 /// samples' irradiance at 24 axes, 1 % of the mean light: a few per cent of hits on another
 /// surface.
 TEST_P(final_gathers, peel_layers_for_comparison) {

@@ -1,5 +1,5 @@
 #pragma once
-// Drawn accumulations: the document's own way (Shimada et al. 2008, sections 3.3 to 4.3). A slab is
+// Drawn accumulations: the paper's own way (Shimada et al. 2008, sections 3.3 to 4.3). A slab is
 // a rectangle that is drawn with additive blending, a pixel a voxel.
 //
 //   tiles_copied  into a large image, a tile a layer, whose tiles are copied to a 3-D texture

@@ -58,7 +58,7 @@ using sky_radiance = std::function<glm::vec3(glm::vec3)>;
 
 enum class gather_method {
     resolve, ///< bundle_resolver: exact
-    peel,    ///< bundle_peeler: the document's layers, for comparison
+    peel,    ///< bundle_peeler: the paper's layers, for comparison
 };
 
 struct final_gather_options {

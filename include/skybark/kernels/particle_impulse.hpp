@@ -2,7 +2,7 @@
 // particle_impulse: what each voxel has to gain so that a running sum against the light gives the
 // attenuation volume.
 //
-// The shadow column of the document (Shimada et al. 2008, 3.3) is the running sum of one impulse at
+// The shadow column of the paper (Shimada et al. 2008, 3.3) is the running sum of one impulse at
 // its top; with the erf profile the impulse is the particle's own depth along y. Either way the
 // whole numbers add up to those that `shadow_polygon` adds row by row, so both give the same bits.
 

@@ -1,5 +1,5 @@
 #pragma once
-// shadow_slab: the shadow polygons of the document (Shimada et al. 2008, 3.3 and 4.1).
+// shadow_slab: the shadow polygons of the paper (Shimada et al. 2008, 3.3 and 4.1).
 //
 // A particle darkens a cylinder from itself downwards, away from the sun. Every layer of constant z
 // cuts it in a rectangle, from a radius above the particle to the bottom of the volume. A particle

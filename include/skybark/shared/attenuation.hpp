@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f863adb376f2e11a1156c84b0caef234a4226f41ab96a9ab8e40810c35bac69d
+// sha256 30435aa08a629d2a7c77355dc9ddd5a77ee3b26139800137d1a26feb550d542a
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -104,7 +104,7 @@ inline vec3 place_of(light_grid grid, vec3 cells)
 }
 
 // What light a particle takes out along a line that passes its centre at the squared distance d2
-// (m²): −ln G. `light` is 0 for extinction alone, 1 for the continuum limit, 2 for the document's
+// (m²): −ln G. `light` is 0 for extinction alone, 1 for the continuum limit, 2 for the paper's
 // product (eq. 7); `forward` is the part of the energy that goes on forward, or P(0).
 inline float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
@@ -131,7 +131,7 @@ inline int bottom_row(float y, float radius)
     return int(floor(y - radius - 0.5f));
 }
 
-// What part of a particle lies above the middle of a row. Profile 0 is the document's step: all of
+// What part of a particle lies above the middle of a row. Profile 0 is the paper's step: all of
 // it from the top row down; 1 integrates through the body.
 inline float part_above(uint profile, int row, float y, float radius, float sigmas)
 {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 69e10229ec5474b4ef78d7a6d45b35403363f37123e5e1bd667e4b4af432fba4
+// sha256 607bc796175853df8157f7b59062e78f64289739dfbe9629a1002f7b651a8bae
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -24,7 +24,7 @@ inline vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
     return vec3(cells.x / voxels.x, cells.y / voxels.y, cells.z / voxels.z);
 }
 
-// The light that an attenuation leaves. Negative attenuation (the document's product can amplify)
+// The light that an attenuation leaves. Negative attenuation (the paper's product can amplify)
 // is light above 1; beyond 1e26 it stays a number.
 inline float cloud_light(float attenuation) {
     return attenuation < 0.0f ? 1.0f / exp_minus(min(-attenuation, 60.0f)) : exp_minus(attenuation);

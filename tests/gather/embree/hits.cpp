@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(many, gather_hits,
                          testing::ValuesIn(cases(1048576, 262144, std::size(directions))),
                          [](const auto& of) { return name_of(of.param) + "_slow"; });
 
-// ---- The document's layers
+// ---- The paper's layers
 
 /// Share of the rays that meet something where Embree's meet nothing, or the other way round.
 template <class B>
