@@ -1,5 +1,6 @@
 #include "glfw_window.hpp"
 
+#include <backends/imgui_impl_glfw.h>
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
@@ -11,7 +12,10 @@ session* listener_of(GLFWwindow* window) {
     return static_cast<session*>(glfwGetWindowUserPointer(window));
 }
 
-void on_button(GLFWwindow* window, int which, int action, int) {
+// The panel learns of everything, the session of what the panel does not take.
+
+void on_button(GLFWwindow* window, int which, int action, int modifiers) {
+    ImGui_ImplGlfw_MouseButtonCallback(window, which, action, modifiers);
     const bool down = action == GLFW_PRESS;
     if (down && ImGui::GetIO().WantCaptureMouse) {
         return;
@@ -30,13 +34,15 @@ void on_pointer(GLFWwindow* window, double x, double y) {
                                  static_cast<float>(height > 0 ? height : 1));
 }
 
-void on_scroll(GLFWwindow* window, double, double y) {
+void on_scroll(GLFWwindow* window, double x, double y) {
+    ImGui_ImplGlfw_ScrollCallback(window, x, y);
     if (!ImGui::GetIO().WantCaptureMouse) {
         listener_of(window)->scroll(static_cast<float>(y));
     }
 }
 
-void on_key(GLFWwindow* window, int which, int, int action, int) {
+void on_key(GLFWwindow* window, int which, int code, int action, int modifiers) {
+    ImGui_ImplGlfw_KeyCallback(window, which, code, action, modifiers);
     if (action != GLFW_PRESS || ImGui::GetIO().WantTextInput) {
         return;
     }
@@ -104,6 +110,9 @@ void glfw_window::listen(session& to) {
     glfwSetCursorPosCallback(window_, on_pointer);
     glfwSetScrollCallback(window_, on_scroll);
     glfwSetKeyCallback(window_, on_key);
+    glfwSetCharCallback(window_, ImGui_ImplGlfw_CharCallback);
+    glfwSetCursorEnterCallback(window_, ImGui_ImplGlfw_CursorEnterCallback);
+    glfwSetWindowFocusCallback(window_, ImGui_ImplGlfw_WindowFocusCallback);
 }
 
 void glfw_window::poll(double seconds) {

@@ -25,7 +25,8 @@ class glfw_window {
     glfw_window& operator=(const glfw_window&) = delete;
     ~glfw_window();
 
-    /// From now on the session gets what mouse and keys do, unless the panel takes it.
+    /// From now on the session gets what mouse and keys do, unless the panel takes it. Dear ImGui's
+    /// part for GLFW must have been started, without callbacks of its own.
     void listen(session& to);
     /// Waits up to `seconds` for input and handles it.
     void poll(double seconds);

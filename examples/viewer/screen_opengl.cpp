@@ -150,7 +150,7 @@ result<void> screen_opengl::load() {
 
 result<void> screen_opengl::start_panel() {
     if (window_ && !options_.scripted) {
-        ImGui_ImplGlfw_InitForOpenGL(window_->handle(), true);
+        ImGui_ImplGlfw_InitForOpenGL(window_->handle(), false);
     }
     panel_ = true;
     if (!ImGui_ImplOpenGL3_Init("#version 450 core")) {

@@ -382,7 +382,7 @@ result<void> screen_vulkan::start_panel() {
         return done;
     }
     if (window_ && !options_.scripted) {
-        ImGui_ImplGlfw_InitForVulkan(window_->handle(), true);
+        ImGui_ImplGlfw_InitForVulkan(window_->handle(), false);
     }
     ImGui_ImplVulkan_InitInfo info{};
     info.Instance = instance_;

@@ -162,12 +162,14 @@ TEST_P(viewer_input, reaches_the_camera_and_the_panel) {
     save(on, "skybark_0007.png");
     ASSERT_TRUE(act(on, "click 1"));
     save(on, "skybark_0008.png");
-    ASSERT_TRUE(act(on, "key h"));
+    ASSERT_TRUE(act(on, "click 5 click 5 click 5")); // the wheel, over the panel
     save(on, "skybark_0009.png");
+    ASSERT_TRUE(act(on, "key h"));
+    save(on, "skybark_0010.png");
     // Another size: the picture keeps its shape, between bars.
     ASSERT_TRUE(act(on, "search --name '^Skybark$' windowsize --sync %@ 400 300"));
-    save(on, "skybark_0010.png");
-    expect_on(screen, "skybark_0010.png", 400, 300);
+    save(on, "skybark_0011.png");
+    expect_on(screen, "skybark_0011.png", 400, 300);
     ASSERT_TRUE(act(on, "key Escape"));
     const outcome done = finish(viewer);
     ASSERT_EQ(done.code, 0) << done.err;
@@ -176,8 +178,15 @@ TEST_P(viewer_input, reaches_the_camera_and_the_panel) {
     EXPECT_GT(different("skybark_0002.png", "skybark_0003.png"), 0.2); // the camera has turned,
     EXPECT_GT(different("skybark_0003.png", "skybark_0004.png"), 0.2); // moved aside,
     EXPECT_GT(different("skybark_0004.png", "skybark_0005.png"), 0.2); // and come nearer
-    EXPECT_GT(different("skybark_0005.png", "skybark_0009.png"), 0.5); // the sun has set
-    const auto wide = pixels("skybark_0010.png");
+    EXPECT_GT(different("skybark_0005.png", "skybark_0010.png"), 0.5); // the sun has set
+    // The wheel scrolls the panel, and leaves the camera, right of it, where it is.
+    EXPECT_GT(different("skybark_0008.png", "skybark_0009.png"), 0.02);
+    const auto clicked = pixels("skybark_0008.png"), scrolled = pixels("skybark_0009.png");
+    for (std::size_t y = 0; y < 200; ++y) {
+        const std::size_t beside = 4 * (320 * y + 296);
+        EXPECT_EQ(std::memcmp(&clicked[beside], &scrolled[beside], 4 * 24), 0) << y;
+    }
+    const auto wide = pixels("skybark_0011.png");
     ASSERT_EQ(wide.size(), 4u * 400 * 300);
     int seen = 0;
     for (std::size_t y = 0; y < 300; ++y) {
