@@ -26,7 +26,7 @@ struct weather {
     double turbidity = 2.4;    ///< 2 very clear … 10 haze
     float wind = 6;            ///< m/s, the mean 10 m above the ground
     float wind_from = 250;     ///< degrees from north, clockwise
-    float cloud = 0.4f;        ///< part of the sky that is covered, 0 … 0.8
+    float cloud = 0.4f;        ///< part of the sky that is covered; above 0.8 no more of it
 
     [[nodiscard]] bool operator==(const weather&) const = default;
 };

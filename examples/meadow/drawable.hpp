@@ -3,6 +3,8 @@
 
 #include <skybark/core/backend.hpp>
 
+#include <cstdint>
+#include <glm/vec3.hpp>
 #include <vector>
 
 namespace skybark::meadow {

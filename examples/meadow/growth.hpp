@@ -8,9 +8,20 @@
 #include <skybark/trees/branch_layout.hpp>
 #include <skybark/trees/leaf_layout.hpp>
 
+#include <array>
+#include <span>
 #include <string_view>
+#include <vector>
 
 namespace skybark::meadow {
+
+/// The camera as `camera` has it, seen from above: x and z.
+struct view_axes {
+    glm::vec2 eye;
+    glm::vec2 ahead; ///< unit
+    glm::vec2 right; ///< unit
+};
+[[nodiscard]] view_axes usual_view();
 
 /// Where a tree stands, and how large it is.
 struct tree_place {
@@ -44,7 +55,7 @@ struct grown_trees {
 /// Blades of one kind.
 struct grown_blades {
     std::vector<leaf> blades; ///< their carriers are stems
-    material look;
+    material blade;
 };
 
 /// Grass and flowers: tufts and discs as leaves, on stems of one segment, each its own root.
@@ -67,6 +78,6 @@ struct grown_grass {
 [[nodiscard]] trees::branch_layout thick_branches(const trees::skeleton& of, std::size_t count);
 
 /// What a material does with light on the whole: a leaf's mean over its picture.
-[[nodiscard]] gather_material light_of(const material& look);
+[[nodiscard]] gather_material light_of(const material& of);
 
 } // namespace skybark::meadow

@@ -4,13 +4,14 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <span>
 
 namespace skybark::meadow {
 
 namespace {
 
-constexpr double turn = 6.283185307179586;
+constexpr double turn = 2 * std::numbers::pi;
 constexpr double hills_begin = 110; ///< m from the origin: no hills within
 constexpr double hills_full = 2200; ///< m: from there on they are as high as they get
 

@@ -27,8 +27,11 @@
 #include <skybark/kernels/light_at_points.hpp>
 #include <skybark/shared/daylight.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 namespace skybark::meadow {
 

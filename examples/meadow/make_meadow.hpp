@@ -13,6 +13,13 @@
 
 namespace skybark::meadow {
 
+namespace detail {
+
+/// m: so far wind bends crowns over the edge of where they are at rest.
+inline constexpr float bent = 3;
+
+} // namespace detail
+
 /// All that a meadow is made of. Parts refer to the device and to each other: they stay in place.
 template <backend B>
 struct meadow<B>::parts {
@@ -43,9 +50,7 @@ struct meadow<B>::parts {
     [[nodiscard]] float ground_below() const { return ground.height(from.eye.x, from.eye.z); }
 
     [[nodiscard]] shadow_box shadows() const {
-        // Wind bends crowns over the edge of where they are at rest.
-        constexpr float bent = 3;
-        return {growing.box().min - bent, growing.box().max + bent};
+        return {growing.box().min - detail::bent, growing.box().max + detail::bent};
     }
 
     void record_sway(typename B::recorder& to) {
@@ -202,8 +207,8 @@ result<meadow<B>> meadow<B>::create(B& device, const description& what, const we
     gather::scene_description meets;
     meets.triangles = surfaces;
     meets.materials = materials;
-    constexpr float bent = 3; // m, that wind carries crowns to
-    meets.box = gather::bounds{growing->box().min - bent, growing->box().max + bent};
+    meets.box =
+        gather::bounds{growing->box().min - detail::bent, growing->box().max + detail::bent};
     light_options gathered;
     gathered.bounces = what.bounces;
     gathered.directions = what.directions;

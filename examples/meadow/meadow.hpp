@@ -17,7 +17,6 @@
 
 #include <array>
 #include <memory>
-#include <span>
 #include <string_view>
 #include <vector>
 

@@ -6,7 +6,7 @@
 //     auto scene = scene_for(from, land.height(from.eye.x, from.eye.z), now, aspect, box);
 //     kernels::surroundings_record around = …;
 //     run(device, [&](auto& recorder) {
-//         paint->record(recorder, scene, around, stand.drawables(), light,
+//         paint->record(recorder, scene, around, drawables, light,
 //                       [&](auto& to, const buffer_view<B>& scene, const draw_target<B>& target) {
 //                           … clouds, behind what has been drawn …
 //                       });
@@ -28,7 +28,6 @@
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/matrix.hpp>
-#include <optional>
 
 namespace skybark::meadow {
 

@@ -19,6 +19,8 @@
 #include <skybark/trees/swaying_tree.hpp>
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 namespace skybark::meadow {
 
@@ -48,7 +50,7 @@ class stand {
         if (auto done = made.sow_grass(device, what, ground); !done) {
             return failure(done.error());
         }
-        if (auto done = made.blow(device, ground, now); !done) {
+        if (auto done = made.blow(device, now); !done) {
             return failure(done.error());
         }
         if (auto done = made.make_room(device); !done) {
@@ -307,8 +309,8 @@ class stand {
         copy.first += count;
     }
 
-    [[nodiscard]] std::uint32_t add(material&& look) {
-        materials_.push_back(std::move(look));
+    [[nodiscard]] std::uint32_t add(material&& one) {
+        materials_.push_back(std::move(one));
         return static_cast<std::uint32_t>(materials_.size() - 1);
     }
 
@@ -436,12 +438,12 @@ class stand {
                 return failure(mesh.error());
             }
             leaves_ += kind.blades.size();
-            grass_->kinds.push_back({std::move(*mesh), add(std::move(kind.look))});
+            grass_->kinds.push_back({std::move(*mesh), add(std::move(kind.blade))});
         }
         return {};
     }
 
-    [[nodiscard]] result<void> blow(B& device, const land&, const weather& now) {
+    [[nodiscard]] result<void> blow(B& device, const weather& now) {
         auto made =
             trees::wind_field<B>::create(device, wind_places_, wind_of(now.wind, now.wind_from));
         if (!made) {

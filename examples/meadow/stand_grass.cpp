@@ -136,14 +136,12 @@ material flower_picture(int petals, float slender, glm::vec3 petal, glm::vec3 mi
 
 /// How many tufts grow on a square metre so far from the usual camera, ahead of it or elsewhere.
 float density(glm::vec2 place) {
-    const camera usual;
-    const glm::vec2 eye(usual.eye.x, usual.eye.z);
-    const glm::vec2 ahead = glm::normalize(glm::vec2(usual.target.x, usual.target.z) - eye);
-    const glm::vec2 from = place - eye;
+    const view_axes usual = usual_view();
+    const glm::vec2 from = place - usual.eye;
     const float far = std::max(glm::length(from), 1.0f);
     constexpr float most = 40;
     const float thinned = most * std::pow(std::min(1.0f, 13 / far), 1.2f);
-    const bool seen = glm::dot(from, ahead) > 0.72f * far || far < 8;
+    const bool seen = glm::dot(from, usual.ahead) > 0.72f * far || far < 8;
     return seen ? thinned : 0.35f * thinned;
 }
 
@@ -185,8 +183,7 @@ class sower {
 
     /// From the usual camera, m.
     [[nodiscard]] static float distance(glm::vec2 place) {
-        const camera usual;
-        return glm::distance(place, glm::vec2(usual.eye.x, usual.eye.z));
+        return glm::distance(place, usual_view().eye);
     }
     [[nodiscard]] glm::vec2 within(glm::vec2 corner, float size) {
         const float x = random_.between(0, size);
@@ -316,12 +313,12 @@ result<grown_grass> grow_grass(float amount, const land& ground, std::uint64_t s
     made.stems = std::move(*stems);
     made.area = std::move(all.area);
     const auto own = static_cast<std::uint32_t>(seed + 5);
-    const material looks[] = {
+    const material pictures[] = {
         tuft_picture(lush_grass, own), tuft_picture(dry_grass, own + 1),
         flower_picture(13, 0.55f, {0.93f, 0.93f, 0.90f}, {0.86f, 0.68f, 0.16f}, 0.13f),
         flower_picture(5, 0.35f, {0.93f, 0.80f, 0.14f}, {0.80f, 0.66f, 0.12f}, 0.10f)};
     for (std::size_t kind = 0; kind < all.blades.size(); ++kind) {
-        made.kinds.push_back({std::move(all.blades[kind]), looks[kind]});
+        made.kinds.push_back({std::move(all.blades[kind]), pictures[kind]});
     }
     return made;
 }

@@ -39,18 +39,6 @@ constexpr composed_place composition[] = {
     {aspen, 47, 29, 14},    {tupelo, 128, -20, 25}, {aspen, 126, 14, 16},   {oak, 70, 40, 13},
 };
 
-struct view_axes {
-    glm::vec2 eye;
-    glm::vec2 ahead;
-    glm::vec2 right;
-};
-view_axes usual_view() {
-    const camera usual;
-    const glm::vec2 eye(usual.eye.x, usual.eye.z);
-    const glm::vec2 ahead = glm::normalize(glm::vec2(usual.target.x, usual.target.z) - eye);
-    return {eye, ahead, {-ahead.y, ahead.x}};
-}
-
 constexpr float border = 4; ///< m at the edge of the land where no tree stands
 
 bool is_in_the_way(const view_axes& seen, glm::vec2 place) {
@@ -60,6 +48,13 @@ bool is_in_the_way(const view_axes& seen, glm::vec2 place) {
 }
 
 } // namespace
+
+view_axes usual_view() {
+    const camera usual;
+    const glm::vec2 eye(usual.eye.x, usual.eye.z);
+    const glm::vec2 ahead = glm::normalize(glm::vec2(usual.target.x, usual.target.z) - eye);
+    return {eye, ahead, {-ahead.y, ahead.x}};
+}
 
 std::vector<tree_place> place_trees(std::uint32_t count, std::uint64_t seed) {
     std::vector<tree_place> places;
@@ -341,16 +336,16 @@ trees::branch_layout thick_branches(const trees::skeleton& of, std::size_t count
     return layout;
 }
 
-gather_material light_of(const material& look_of) {
+gather_material light_of(const material& of) {
     gather_material made;
     glm::vec3 sum(0);
     float covered = 0;
-    for (std::size_t i = 0; i + 3 < look_of.texels.size(); i += 4) {
+    for (std::size_t i = 0; i + 3 < of.texels.size(); i += 4) {
         const auto channel = [&](std::size_t c) {
-            return static_cast<float>(look_of.texels[i + c]) / 255;
+            return static_cast<float>(of.texels[i + c]) / 255;
         };
-        if (look_of.as == look::bark) {
-            sum += glm::mix(look_of.low, look_of.high, channel(3));
+        if (of.as == look::bark) {
+            sum += glm::mix(of.low, of.high, channel(3));
             covered += 1;
         } else if (channel(3) >= 0.5f) {
             sum += glm::vec3(shared::leaf_linear(channel(0)), shared::leaf_linear(channel(1)),
@@ -359,10 +354,10 @@ gather_material light_of(const material& look_of) {
         }
     }
     made.diffuse = sum / std::max(covered, 1.0f);
-    if (look_of.as == look::leaf) {
+    if (of.as == look::leaf) {
         // As the leaf kernels have it: what comes through is yellower.
         made.two_sided = 1;
-        made.transmission = made.diffuse * glm::vec3(1.1f, 1.0f, 0.3f) * look_of.through;
+        made.transmission = made.diffuse * glm::vec3(1.1f, 1.0f, 0.3f) * of.through;
         made.transmission = glm::min(made.transmission, glm::vec3(1) - made.diffuse);
     }
     return made;
