@@ -12,7 +12,6 @@
 #include <nlohmann/json.hpp>
 #include <skybark/clouds/cumulus.hpp>
 
-#include <cmath>
 #include <limits>
 
 namespace skybark::tool {

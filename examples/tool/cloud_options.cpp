@@ -1,6 +1,5 @@
 #include "cloud_options.hpp"
 
-#include <algorithm>
 #include <CLI/CLI.hpp>
 #include <io/text_input.hpp>
 

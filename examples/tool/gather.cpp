@@ -19,7 +19,6 @@
 #include <skybark/gather/scene.hpp>
 
 #include <bit>
-#include <cmath>
 #include <unistd.h>
 
 namespace skybark::tool {

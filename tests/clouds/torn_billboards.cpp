@@ -4,7 +4,6 @@
 
 #include <skybark/clouds/torn_billboards.hpp>
 
-#include <cstring>
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <map>
-#include <numeric>
 
 using namespace skybark;
 using meadow::stage;

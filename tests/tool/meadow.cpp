@@ -2,8 +2,6 @@
 
 #include "pictures.hpp"
 
-#include <cmath>
-
 using namespace skybark::tests;
 
 namespace {

@@ -12,7 +12,6 @@
 #include <complex>
 #include <cstdio>
 #include <gtest/gtest.h>
-#include <numeric>
 
 using namespace skybark;
 using glm::dvec3;
