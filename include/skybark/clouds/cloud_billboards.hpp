@@ -30,7 +30,7 @@ using kernels::cloud_lighting;
 
 /// The sun's light that is scattered once, by an attenuation volume of these options: with
 /// `continuum` what goes on forward is part of the light. With `product`, `as_document` draws by
-/// S = a τ P I as the document does (which makes thick particles too bright).
+/// S = a τ P I as the paper does (which makes thick particles too bright).
 [[nodiscard]] inline cloud_lighting single_scattering(const attenuation_options& options,
                                                       const light_box& box,
                                                       const phase_function& phase,
@@ -129,7 +129,7 @@ class cloud_billboards {
         if (count == 0) {
             return;
         }
-        to.upload(view<B>(*lighting_), std::as_bytes(std::span(&light.lighting, 1)));
+        to.upload(view<B>(*lighting_), bytes_of_one(light.lighting));
         const auto keys = view<B, std::uint32_t>(*keys_, 0, count);
         const auto order = view<B, std::uint32_t>(*order_, 0, count);
         to.map(kernels::billboard_depth{glm::vec4(eye, 0)}, {particles, keys, order},

@@ -30,7 +30,7 @@ class cloud_density {
                 const cloud_light_sources<B>& light, const typename B::image& color,
                 const typename B::image& depth) const {
         assert(light.sun != nullptr);
-        to.upload(view<B>(*lighting_), std::as_bytes(std::span(&light.lighting, 1)));
+        to.upload(view<B>(*lighting_), bytes_of_one(light.lighting));
         const volume_description what = density.description();
         const glm::vec3 size = where.high - where.low;
         const glm::vec3 side = size / glm::vec3(what.width, what.height, what.depth);

@@ -25,7 +25,6 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <numbers>
-#include <span>
 #include <vector>
 
 namespace skybark::clouds {
@@ -192,13 +191,17 @@ inline std::vector<cumulus_ball> cumulus_towers(cumulus_random& random, double h
     return balls;
 }
 
-/// Whether a new ball would only lie inside what is there.
-inline bool cumulus_buried(std::span<const cumulus_ball> balls, glm::dvec3 centre, double radius) {
-    return std::any_of(balls.begin(), balls.end(), [&](const cumulus_ball& b) {
-        const double room = b.radius - 0.35 * radius;
-        const glm::dvec3 d = b.centre - centre;
-        return room > 0 && glm::dot(d, d) < room * room;
-    });
+/// Whether a new ball would only lie inside one of the `count` that are there.
+inline bool cumulus_buried(const cumulus_ball* balls, std::size_t count, glm::dvec3 centre,
+                           double radius) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const double room = balls[i].radius - 0.35 * radius;
+        const glm::dvec3 d = balls[i].centre - centre;
+        if (room > 0 && glm::dot(d, d) < room * room) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /// The whole pile: balls on balls down to `smallest`, then the shreds around the foot.
@@ -215,7 +218,7 @@ inline std::vector<cumulus_ball> cumulus_pile(cumulus_random& random, double hal
                 const glm::dvec3 centre =
                     balls[parent].centre + random.direction(-0.25) * (0.93 * balls[parent].radius);
                 if (radius >= smallest && centre.y + radius <= thickness &&
-                    !cumulus_buried(std::span(balls).first(last), centre, radius)) {
+                    !cumulus_buried(balls.data(), last, centre, radius)) {
                     balls.push_back({centre, radius, 1});
                 }
             }
@@ -241,7 +244,7 @@ struct cumulus_places {
     double volume = 0;
 };
 
-inline cumulus_places cumulus_inside(cumulus_random& random, std::span<const cumulus_ball> balls,
+inline cumulus_places cumulus_inside(cumulus_random& random, const std::vector<cumulus_ball>& balls,
                                      double thickness, std::size_t wanted) {
     glm::dvec3 low(0);
     glm::dvec3 high(0, thickness, 0);
@@ -469,7 +472,9 @@ cumulus_field(const cumulus_field_options& options) {
         one.extinction = options.extinction;
         one.albedo = options.albedo;
         const auto cloud = cumulus_cloud(one);
-        particles.insert(particles.end(), cloud.begin(), cloud.end());
+        for (const cloud_particle& particle : cloud) {
+            particles.push_back(particle);
+        }
     }
     return particles;
 }

@@ -100,7 +100,7 @@ class harris_light {
     }
 
     /// Light at each particle's centre over the sun's, in the order of the particles.
-    [[nodiscard]] std::span<const float> lights() const noexcept { return lights_; }
+    [[nodiscard]] const std::vector<float>& lights() const noexcept { return lights_; }
 
   private:
     harris_light(B& device, std::uint32_t columns, std::uint32_t rows, std::uint32_t most,

@@ -74,7 +74,7 @@ class torn_billboards {
         if (count == 0) {
             return;
         }
-        to.upload(view<B>(*lighting_), std::as_bytes(std::span(&light.lighting, 1)));
+        to.upload(view<B>(*lighting_), bytes_of_one(light.lighting));
         const auto keys = view<B, std::uint32_t>(*keys_, 0, count);
         const auto order = view<B, std::uint32_t>(*order_, 0, count);
         to.map(kernels::billboard_depth{glm::vec4(eye, 0)}, {particles.moved, keys, order},

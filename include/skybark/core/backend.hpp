@@ -27,6 +27,7 @@
 //    A device must outlive what it made. Nothing here is shared between threads without a lock of
 //    the caller's.
 
+#include <skybark/core/bytes.hpp>
 #include <skybark/core/kernel.hpp>
 #include <skybark/core/result.hpp>
 

@@ -1,14 +1,14 @@
 #pragma once
 // bundle_peeler: what each sample meets first along a bundle of parallel rays, by depth peeling:
-// the document's way (Hachisuka 2005, GPU Gems 2, ch. 38), as the baseline of bundle_resolver.
+// the paper's way (Hachisuka 2005, GPU Gems 2, ch. 38), as the baseline of bundle_resolver.
 //
 // The scene is drawn along the bundle into a square picture, one layer of depth after another, from
 // the far side to the near one: fragments that are nearer than the last layer, and of those the
 // farthest. After each layer every sample looks at the pixel that it falls into, and takes what
-// lies before it in place of what it had; the last one taken is the nearest. The document keeps the
+// lies before it in place of what it had; the last one taken is the nearest. The paper keeps the
 // layer's colour; here it is the triangle, so that its light is looked up once, at the end.
 //
-// Beyond the document: one peel serves the samples that look against the bundle as well, which keep
+// Beyond the paper: one peel serves the samples that look against the bundle as well, which keep
 // the first layer that lies before them; and what rises no farther above a sample's own plane than
 // that plane rises within half a pixel does not count, or slopes would meet themselves.
 //
@@ -106,8 +106,7 @@ class bundle_peeler {
     /// Whether the last layer recorded drew anything, so that there may be more.
     [[nodiscard]] result<bool> remaining() {
         count_record count;
-        if (auto done = read_back<B, count_record>(*device_, *count_, std::span(&count, 1));
-            !done) {
+        if (auto done = device_->download(*count_, 0, writable_bytes_of_one(count)); !done) {
             return failure(done.error());
         }
         return count.written != 0;

@@ -2,6 +2,7 @@
 // What a final gather has so far, as bytes that can be kept: a header, and the sums in an order
 // that no device's limits change.
 
+#include <skybark/core/bytes.hpp>
 #include <skybark/core/result.hpp>
 
 #include <array>
@@ -31,7 +32,7 @@ class fingerprint {
     }
     template <class T>
     void add_value(const T& value) {
-        add(std::as_bytes(std::span(&value, 1)));
+        add(bytes_of_one(value));
     }
     [[nodiscard]] std::uint64_t value() const noexcept { return state_; }
 

@@ -165,7 +165,7 @@ struct placed_chart {
 /// Charts on shelves.
 class chart_packer {
   public:
-    chart_packer(std::span<const triangle_shape> shapes, std::span<const std::uint32_t> order)
+    chart_packer(const std::vector<triangle_shape>& shapes, const std::vector<std::uint32_t>& order)
         : shapes_(shapes), order_(order), placed_(shapes.size()) {}
 
     /// Places all charts in `size` · `size` texels; false: they don't fit.
@@ -248,8 +248,8 @@ class chart_packer {
         chart.turned = where.turned;
     }
 
-    std::span<const triangle_shape> shapes_;
-    std::span<const std::uint32_t> order_; ///< the highest first
+    const std::vector<triangle_shape>& shapes_;
+    const std::vector<std::uint32_t>& order_; ///< the highest first
     std::vector<placed_chart> placed_;
     std::vector<std::int32_t> free_; ///< of the shelf: the first free texel of each row
     std::int32_t top_ = 0;           ///< the shelf's first row

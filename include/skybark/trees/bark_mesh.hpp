@@ -73,8 +73,8 @@ namespace detail {
 /// Finds which triangles hang together by edges that may be split.
 class long_edge_groups {
   public:
-    long_edge_groups(std::span<const surface_vertex> vertices,
-                     std::span<const std::uint32_t> indices, float shortest)
+    long_edge_groups(const std::vector<surface_vertex>& vertices,
+                     const std::vector<std::uint32_t>& indices, float shortest)
         : group_(indices.size() / 3) {
         for (std::uint32_t t = 0; t < group_.size(); ++t) {
             group_[t] = t;
@@ -129,8 +129,8 @@ class long_edge_groups {
 inline constexpr std::uint8_t not_refined = 255;
 
 /// The mean radius of the branches in each group, by how far u goes over so much of their width.
-[[nodiscard]] inline std::vector<float> radii_of_groups(std::span<const surface_vertex> vertices,
-                                                        std::span<const std::uint32_t> indices,
+[[nodiscard]] inline std::vector<float> radii_of_groups(const std::vector<surface_vertex>& vertices,
+                                                        const std::vector<std::uint32_t>& indices,
                                                         long_edge_groups& groups) {
     const std::size_t triangles = indices.size() / 3;
     std::vector<float> sum(triangles, 0.0f), count(triangles, 0.0f);
@@ -157,8 +157,8 @@ inline constexpr std::uint8_t not_refined = 255;
 /// So an edge between one that is refined and one that is not, or between two with other halvings,
 /// isn't split at rest, nor in any pose that stretches it less than that.
 [[nodiscard]] inline std::vector<std::uint8_t>
-triangles_to_refine(std::span<const surface_vertex> vertices,
-                    std::span<const std::uint32_t> indices, const bark_options& options) {
+triangles_to_refine(const std::vector<surface_vertex>& vertices,
+                    const std::vector<std::uint32_t>& indices, const bark_options& options) {
     const std::size_t triangles = indices.size() / 3;
     const float shortest = options.threshold / options.stretch;
     const auto corner = [&](std::size_t t, std::size_t k) -> const surface_vertex& {
@@ -627,7 +627,7 @@ class bark_mesh {
         }
         std::vector<std::uint32_t> indices(p.indices ? std::size_t{3} * p.elements : 0);
         if (p.indices) {
-            auto read = read_back<B, std::uint32_t>(device, *p.indices, std::span(indices));
+            auto read = device.download(*p.indices, 0, writable_bytes_of(indices));
             if (!read) {
                 return read;
             }
@@ -802,7 +802,7 @@ class bark_mesh {
     [[nodiscard]] static result<count_record> read_count(B& device, const buffer& count,
                                                          std::uint64_t offset = 0) {
         count_record made;
-        auto done = device.download(count, offset, std::as_writable_bytes(std::span(&made, 1)));
+        auto done = device.download(count, offset, writable_bytes_of_one(made));
         return done ? result<count_record>(made) : result<count_record>(failure(done.error()));
     }
 
@@ -823,7 +823,7 @@ class bark_mesh {
                                                       std::uint64_t count, host_mesh& to) {
         const std::size_t first = to.vertices.size();
         to.vertices.resize(first + count);
-        return read_back<B, surface_vertex>(device, from, std::span(to.vertices).subspan(first));
+        return device.download(from, 0, writable_bytes_of(to.vertices, first));
     }
 
     /// The vertices that a geometry draws, three a triangle.
@@ -836,7 +836,7 @@ class bark_mesh {
         if (g.indices) {
             auto done = device.download(*g.indices.buffer,
                                         g.indices.offset + sizeof(std::uint32_t) * g.first,
-                                        std::as_writable_bytes(std::span(indices)));
+                                        writable_bytes_of(indices));
             if (!done) {
                 return failure(done.error());
             }

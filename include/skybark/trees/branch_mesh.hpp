@@ -140,8 +140,8 @@ class branch_mesh {
                 count = 3 * made.written;
             }
             mesh.vertices.resize(std::size_t{first} + count);
-            const std::span<surface_vertex> to = std::span(mesh.vertices).subspan(first);
-            if (auto done = read_back<B, surface_vertex>(device, p.vertices, to); !done) {
+            if (auto done = device.download(p.vertices, 0, writable_bytes_of(mesh.vertices, first));
+                !done) {
                 return failure(done.error());
             }
             if (auto done = download_indices(device, p, first, count, mesh.indices); !done) {
@@ -256,8 +256,7 @@ class branch_mesh {
         const std::uint64_t most_caps = chunk_of(device, cap_bytes, 0);
         for (std::uint64_t first = 0; first < caps.size(); first += most_caps) {
             const std::uint64_t count = std::min<std::uint64_t>(most_caps, caps.size() - first);
-            if (auto added = add_caps(device, layout, std::span(caps).subspan(first, count));
-                !added) {
+            if (auto added = add_caps(device, layout, caps.data() + first, count); !added) {
                 return added;
             }
         }
@@ -363,21 +362,19 @@ class branch_mesh {
     }
 
     [[nodiscard]] result<void> add_caps(B& device, const branch_layout& layout,
-                                        std::span<const std::uint32_t> caps) {
+                                        const std::uint32_t* caps, std::uint64_t count) {
         local_ends local(layout);
-        std::vector<std::uint32_t> numbered;
-        numbered.reserve(caps.size());
-        for (const std::uint32_t cap : caps) {
-            numbered.push_back(2 * local(cap / 2) + cap % 2);
+        std::vector<std::uint32_t> numbered(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            numbered[i] = 2 * local(caps[i] / 2) + caps[i] % 2;
         }
-        const std::uint64_t vertices = std::uint64_t{options_.sides} * caps.size();
+        const std::uint64_t vertices = std::uint64_t{options_.sides} * count;
         auto added = add_part<std::uint32_t>(device, numbered, local.ends, local.carriers,
                                              vertices * sizeof(surface_vertex));
         if (added) {
             parts_.back().caps = true;
             parts_.back().vertex_count = static_cast<std::uint32_t>(vertices);
-            parts_.back().triangles =
-                static_cast<std::uint32_t>(caps.size() * cap_.ring_triangles());
+            parts_.back().triangles = static_cast<std::uint32_t>(count * cap_.ring_triangles());
         }
         return added;
     }
@@ -446,11 +443,10 @@ class branch_mesh {
             return {};
         }
         to.resize(before + std::size_t{3} * p.triangles);
-        const std::span<std::uint32_t> added = std::span(to).subspan(before);
-        auto done =
-            read_back<B, std::uint32_t>(device, p.caps ? *cap_indices_ : *tube_indices_, added);
-        for (std::uint32_t& index : added) {
-            index += first;
+        auto done = device.download(p.caps ? *cap_indices_ : *tube_indices_, 0,
+                                    writable_bytes_of(to, before));
+        for (std::size_t i = before; i < to.size(); ++i) {
+            to[i] += first;
         }
         return done;
     }

@@ -63,7 +63,7 @@ class chain_surface {
     /// Lets in a loop of `sides` places (U, V) around `centre`, counter-clockwise. `metric` is the
     /// size of one U and one V. Where there is not enough room the loop is made smaller, and moved
     /// if it must be.
-    const hole& cut(const glm::dvec2& centre, std::span<const glm::dvec2> loop,
+    const hole& cut(const glm::dvec2& centre, const std::vector<glm::dvec2>& loop,
                     const glm::dvec2& metric) {
         metric_ = metric;
         rays_.clear();
@@ -90,12 +90,11 @@ class chain_surface {
         return take_out(best);
     }
 
-    [[nodiscard]] std::span<const triangle> triangles() const { return triangles_; }
-    [[nodiscard]] std::span<const hole> holes() const { return holes_; }
+    [[nodiscard]] const std::vector<triangle>& triangles() const { return triangles_; }
+    [[nodiscard]] const std::vector<hole>& holes() const { return holes_; }
     /// Of a vertex: (U, V), U in its own period.
     [[nodiscard]] const glm::dvec2& place(std::uint32_t vertex) const { return places_[vertex]; }
     [[nodiscard]] std::uint32_t grid_vertices() const { return (gaps_ + 1) * sides_; }
-    [[nodiscard]] std::uint32_t grid_triangles() const { return 2 * sides_ * gaps_; }
 
   private:
     /// One edge of a disk's boundary: from `vertex` to the next edge's.

@@ -411,8 +411,7 @@ class closed_layout_builder {
         const glm::vec3 direction = direction_of(first);
         const float length = chord_length(first);
         const outlet out = met ? *met : outlet_beside(parent, k, start.position, direction);
-        const std::span<glm::vec2> loop =
-            std::span(layout_.loops).subspan(number * options_.sides, options_.sides);
+        glm::vec2* const loop = layout_.loops.data() + number * options_.sides;
         collar.centre = place_loop(parent, start, direction, out, loop);
         // As far that no point of the first ring is inside, if the branch is long enough for it.
         const float steep = glm::dot(direction, out.normal);
@@ -436,14 +435,14 @@ class closed_layout_builder {
     /// and wrapped around the parent. Gives the centre.
     [[nodiscard]] glm::vec2 place_loop(const branch_chain& parent, const branch_end& start,
                                        const glm::vec3& direction, const outlet& out,
-                                       std::span<glm::vec2> loop) {
+                                       glm::vec2* loop) {
         const glm::vec3 along = steep_enough(direction, out.normal, out.axis);
         const glm::vec3 east = glm::normalize(glm::cross(out.axis, out.normal));
         const glm::vec3 north = glm::cross(out.normal, east);
         const glm::vec3 x = shared::quaternion_x(start.orientation);
         const glm::vec3 z = shared::quaternion_z(start.orientation);
         glm::vec2 most(0);
-        for (std::size_t c = 0; c < loop.size(); ++c) {
+        for (std::size_t c = 0; c < options_.sides; ++c) {
             const glm::vec3 ring = (x * corners_[c].x - z * corners_[c].y) * start.radius;
             const float down = glm::dot(ring, out.normal) / glm::dot(along, out.normal);
             const glm::vec3 foot = (ring - along * down) * flare;
@@ -456,7 +455,8 @@ class closed_layout_builder {
                                std::min(1.0f, 0.45f * total / most.y));
         const float room = most.y * shrink.y * 1.1f;
         const glm::vec2 centre(out.turn, std::clamp(out.along, room, std::max(room, total - room)));
-        for (glm::vec2& p : loop) {
+        for (std::size_t c = 0; c < options_.sides; ++c) {
+            glm::vec2& p = loop[c];
             p *= shrink;
             p.x = std::asin(p.x / out.radius) / two_pi;
             p += centre;

@@ -124,17 +124,17 @@ class closed_part_builder {
             while (last < holes_.size() && holes_[last].owner == k) {
                 ++last;
             }
-            const std::span<const placed_hole> own = std::span(holes_).subspan(next, last - next);
+            const std::size_t first = next;
             next = last;
-            if (!part_.indices.empty() && !has_room_for(own)) {
+            if (!part_.indices.empty() && !has_room_for(first, last)) {
                 if (auto done = finish(take); !done) {
                     return done;
                 }
             }
             add_tube(k);
-            for (const placed_hole& hole : own) {
-                add_belt(hole);
-                add_skirt(hole);
+            for (std::size_t h = first; h < last; ++h) {
+                add_belt(holes_[h]);
+                add_skirt(holes_[h]);
             }
             if (k == 0 && !is_child_[c]) {
                 add_tip(k, true, static_cast<std::uint32_t>(first_tip_ + 2 * std::uint64_t{c}));
@@ -188,9 +188,10 @@ class closed_part_builder {
         for (std::uint32_t n = 0; n < collars_.size(); ++n) {
             cut_hole(n);
         }
-        std::stable_sort(
-            holes_.begin(), holes_.end(),
-            [](const placed_hole& a, const placed_hole& b) { return a.owner < b.owner; });
+        // No two holes have one number.
+        std::sort(holes_.begin(), holes_.end(), [](const placed_hole& a, const placed_hole& b) {
+            return a.owner != b.owner ? a.owner < b.owner : a.number < b.number;
+        });
     }
 
     void cut_hole(std::uint32_t n) {
@@ -440,13 +441,15 @@ class closed_part_builder {
     // ---- Parts
     // -----------------------------------------------------------------------------------
 
-    /// Whether one more segment, with these holes, leaves every buffer small enough.
-    [[nodiscard]] bool has_room_for(std::span<const placed_hole> holes) const {
+    /// Whether one more segment, with its holes from `first` to `last`, leaves every buffer small
+    /// enough.
+    [[nodiscard]] bool has_room_for(std::size_t first, std::size_t last) const {
         std::uint64_t segments = part_.segments.size() + 1;
         std::uint64_t points = part_.points.size();
         std::uint64_t triangles =
             part_.indices.size() / 3 + tube_.ring_triangles() + std::uint64_t{2} * options_.sides;
-        for (const placed_hole& placed : holes) {
+        for (std::size_t h = first; h < last; ++h) {
+            const placed_hole& placed = holes_[h];
             const std::uint64_t belt = surface_->holes()[placed.number].triangles;
             segments += placed.segments + 1;
             points += 3 * belt + options_.sides + 1;
@@ -614,17 +617,16 @@ class closed_mesh {
             const std::size_t first_index = mesh.indices.size();
             mesh.vertices.resize(std::size_t{first} + p.vertex_count);
             mesh.indices.resize(first_index + std::size_t{3} * p.triangles);
-            const std::span<std::uint32_t> indices = std::span(mesh.indices).subspan(first_index);
-            auto read = read_back<B, surface_vertex>(device, p.vertices,
-                                                     std::span(mesh.vertices).subspan(first));
+            auto read = device.download(p.vertices, 0, writable_bytes_of(mesh.vertices, first));
             if (!read) {
                 return failure(read.error());
             }
-            if (auto done = read_back<B, std::uint32_t>(device, p.indices, indices); !done) {
-                return failure(done.error());
+            read = device.download(p.indices, 0, writable_bytes_of(mesh.indices, first_index));
+            if (!read) {
+                return failure(read.error());
             }
-            for (std::uint32_t& index : indices) {
-                index += first;
+            for (std::size_t i = first_index; i < mesh.indices.size(); ++i) {
+                mesh.indices[i] += first;
             }
         }
         return mesh;

@@ -249,8 +249,8 @@ class detailed_branch_mesh {
             }
             const std::size_t first = mesh.vertices.size();
             mesh.vertices.resize(first + std::size_t{3} * count.written);
-            const std::span<surface_vertex> to = std::span(mesh.vertices).subspan(first);
-            if (auto done = read_back<B, surface_vertex>(device, p.vertices, to); !done) {
+            if (auto done = device.download(p.vertices, 0, writable_bytes_of(mesh.vertices, first));
+                !done) {
                 return failure(done.error());
             }
         }
@@ -344,7 +344,7 @@ class detailed_branch_mesh {
     }
 
     /// How many triangles these segments have in full detail.
-    [[nodiscard]] std::uint64_t full_triangles(std::span<const branch_segment> segments) const {
+    [[nodiscard]] std::uint64_t full_triangles(const std::vector<branch_segment>& segments) const {
         if (options_.policy == padding::degenerate) {
             return segments.size() * max_triangles(tube_);
         }

@@ -155,21 +155,23 @@ class leaf_mesh {
                 count = 3 * made.written;
             }
             mesh.vertices.resize(std::size_t{first} + count);
-            const std::span<surface_vertex> to = std::span(mesh.vertices).subspan(first);
-            if (auto done = read_back<B, surface_vertex>(device, p.vertices, to); !done) {
+            if (auto done = device.download(p.vertices, 0, writable_bytes_of(mesh.vertices, first));
+                !done) {
                 return failure(done.error());
             }
             const bool list = options_.form == mesh_form::list;
             const std::size_t before = mesh.indices.size();
             mesh.indices.resize(before + (list ? count : std::size_t{3} * p.triangles));
-            const std::span<std::uint32_t> added = std::span(mesh.indices).subspan(before);
             if (list) {
-                std::iota(added.begin(), added.end(), 0u);
-            } else if (auto done = read_back<B, std::uint32_t>(device, *indices_, added); !done) {
+                std::iota(mesh.indices.data() + before, mesh.indices.data() + mesh.indices.size(),
+                          0u);
+            } else if (auto done =
+                           device.download(*indices_, 0, writable_bytes_of(mesh.indices, before));
+                       !done) {
                 return failure(done.error());
             }
-            for (std::uint32_t& index : added) {
-                index += first;
+            for (std::size_t i = before; i < mesh.indices.size(); ++i) {
+                mesh.indices[i] += first;
             }
         }
         return mesh;

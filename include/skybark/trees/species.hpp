@@ -220,7 +220,7 @@ struct species_entry {
 };
 
 /// Every built-in species, in alphabetical order.
-[[nodiscard]] inline std::span<const species_entry> all_species() {
+[[nodiscard]] inline const std::array<species_entry, 4>& all_species() {
     static const std::array<species_entry, 4> species{{
         {"black_tupelo", "Black tupelo (Nyssa sylvatica)", black_tupelo()},
         {"california_black_oak", "California black oak (Quercus kelloggii)",

@@ -121,7 +121,7 @@ class sway {
     [[nodiscard]] std::size_t size() const noexcept { return roots_.size(); }
 
     /// The trees, and the first natural frequency of each (rad/s).
-    [[nodiscard]] std::span<const sway_layout::tree> trees() const noexcept { return trees_; }
+    [[nodiscard]] const std::vector<sway_layout::tree>& trees() const noexcept { return trees_; }
 
     /// Brings all joints to rest.
     [[nodiscard]] result<void> reset(B& device) {
@@ -132,13 +132,10 @@ class sway {
     [[nodiscard]] result<std::vector<joint_motion>> download(B& device) const {
         std::vector<shared::sway_state> states(size());
         std::vector<shared::sway_energy> energies(size());
-        if (auto done =
-                read_back<B, shared::sway_state>(device, *states_[current_], std::span(states));
-            !done) {
+        if (auto done = device.download(*states_[current_], 0, writable_bytes_of(states)); !done) {
             return failure(done.error());
         }
-        if (auto done = read_back<B, shared::sway_energy>(device, *energies_, std::span(energies));
-            !done) {
+        if (auto done = device.download(*energies_, 0, writable_bytes_of(energies)); !done) {
             return failure(done.error());
         }
         std::vector<joint_motion> joints(size());
@@ -161,11 +158,10 @@ class sway {
             states[i].rate = motions[i].rate;
         }
         const std::vector<shared::sway_gain> still(size());
-        if (auto done = device.upload(*states_[current_], 0, std::as_bytes(std::span(states)));
-            !done) {
+        if (auto done = device.upload(*states_[current_], 0, bytes_of(states)); !done) {
             return done;
         }
-        if (auto done = device.upload(*gains_, 0, std::as_bytes(std::span(still))); !done) {
+        if (auto done = device.upload(*gains_, 0, bytes_of(still)); !done) {
             return done;
         }
         return run(device, [&](recorder& to) {
@@ -234,7 +230,9 @@ class sway {
         for (std::size_t l = 0; l + 1 < of.levels.size(); ++l) {
             down_.push_back({of.levels[l], of.levels[l + 1] - of.levels[l]});
         }
-        up_.assign(down_.rbegin(), down_.rend());
+        for (std::size_t l = down_.size(); l != 0; --l) {
+            up_.push_back(down_[l - 1]);
+        }
         if (auto done = allocate(device, layout.joints); !done) {
             return done;
         }
@@ -284,17 +282,16 @@ class sway {
         }
         const shared::sway_state ground = at_rest();
         for (const std::optional<buffer>& states : states_) {
-            if (auto done =
-                    device.upload(*states, n * sizeof ground, std::as_bytes(std::span(&ground, 1)));
+            if (auto done = device.upload(*states, n * sizeof ground, bytes_of_one(ground));
                 !done) {
                 return done;
             }
         }
-        return device.upload(*joints_, 0, std::as_bytes(std::span(joints)));
+        return device.upload(*joints_, 0, bytes_of(joints));
     }
 
-    [[nodiscard]] std::span<const range> up() const { return up_; }
-    [[nodiscard]] std::span<const range> down() const { return down_; }
+    [[nodiscard]] const std::vector<range>& up() const { return up_; }
+    [[nodiscard]] const std::vector<range>& down() const { return down_; }
     [[nodiscard]] buffer_view<B> now() const { return view<B>(*states_[current_]); }
     [[nodiscard]] buffer_view<B> next() const { return view<B>(*states_[1 - current_]); }
 

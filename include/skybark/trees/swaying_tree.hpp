@@ -63,7 +63,7 @@ namespace detail {
 /// The crown of each tree: the box around its leaves, and their area.
 class crowns {
   public:
-    crowns(const skeleton& of, std::span<const leaf> leaves, std::span<const float> area)
+    crowns(const skeleton& of, std::span<const leaf> leaves, const std::vector<float>& area)
         : root_(of.size()), crown_(of.size()) {
         for (std::uint32_t i = 0; i < of.size(); ++i) {
             root_[i] = of.parent[i] == none ? i : root_[of.parent[i]];
@@ -80,7 +80,7 @@ class crowns {
 
     /// Scales a segment's area by `factor(area of all leaves, size of the box)` of its tree.
     template <class Factor>
-    void scale(std::span<float> area, Factor&& factor) const {
+    void scale(std::vector<float>& area, Factor&& factor) const {
         for (std::size_t i = 0; i < area.size(); ++i) {
             const crown& c = crown_[root_[i]];
             if (c.area > 0) {
@@ -110,7 +110,7 @@ inline constexpr double ellipse = 0.78539816339744831; // of its box
 /// `most_index` m² for each m² of ground below the crown, they count for that much (a leaf area
 /// index of 3 to 6 is that of broad-leaved crowns: Asner, Scurlock and Hicke 2003).
 inline void limit_leaf_area(const skeleton& of, std::span<const leaf> leaves, double most_index,
-                            std::span<float> area) {
+                            std::vector<float>& area) {
     detail::crowns(of, leaves, area).scale(area, [&](double all, const glm::dvec3& size) {
         return std::min(1.0, most_index * detail::ellipse * size.x * size.z / all);
     });
@@ -120,7 +120,7 @@ inline void limit_leaf_area(const skeleton& of, std::span<const leaf> leaves, do
 /// and Saeki (1953) have it for light: of leaves of area A whose crown's outline has area S, as
 /// much as S (1 − e^(−k A / S)) / k is in the open, k = ½ for leaves that look everywhere.
 inline void shelter_leaves(const skeleton& of, std::span<const leaf> leaves,
-                           std::span<float> area) {
+                           std::vector<float>& area) {
     detail::crowns(of, leaves, area).scale(area, [&](double all, const glm::dvec3& size) {
         const double outline = detail::ellipse * std::max(size.x, size.z) * size.y;
         const double depth = 0.5 * all / outline;

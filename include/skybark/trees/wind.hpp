@@ -198,7 +198,7 @@ class wind_field {
                 detail::fraction(tones_[i].phase + (tones_[i].frequency - frequency) * time);
             tones_[i].frequency = frequency;
         }
-        return device.upload(*waves_, 0, std::as_bytes(std::span(waves)));
+        return device.upload(*waves_, 0, bytes_of(waves));
     }
 
     /// Appends the air at `time`, in seconds, finite. Allocates nothing.
@@ -209,7 +209,7 @@ class wind_field {
             phases_now_[i / 4][static_cast<int>(i % 4)] =
                 static_cast<float>(detail::fraction(w.frequency * time + w.phase));
         }
-        to.upload(view<B>(*phases_), std::as_bytes(std::span(phases_now_)));
+        to.upload(view<B>(*phases_), bytes_of(phases_now_));
         detail::map_all<B>(to, kernel_,
                            {view<B>(*buffers_.places), view<B>(*waves_), view<B>(*phases_),
                             view<B>(*buffers_.air)},
@@ -325,7 +325,7 @@ class wind_grid {
     void set(recorder& to, std::span<const glm::vec3> velocities) {
         assert(velocities.size() == scratch_.size());
         widen(velocities);
-        to.upload(view<B>(*nodes_), std::as_bytes(std::span(scratch_)));
+        to.upload(view<B>(*nodes_), bytes_of(scratch_));
     }
     /// The nodes on the device, one vec4 each (w unused), for a kernel that writes them there.
     [[nodiscard]] buffer_view<B> velocities() const { return view<B>(*nodes_); }
@@ -420,7 +420,7 @@ class wind_function {
             now_[i] = shared::wind_velocity(u.x, u.y, u.z);
         }
         if (!now_.empty()) {
-            to.upload(view<B>(air_), std::as_bytes(std::span(now_)));
+            to.upload(view<B>(air_), bytes_of(now_));
         }
     }
 
