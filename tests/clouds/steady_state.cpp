@@ -29,7 +29,7 @@ std::vector<attenuation_options> ways() {
 
 TEST(relit_frame, allocates_nothing_on_the_host) {
     if (!SKYBARK_TEST_COUNTS_ALLOCATIONS) {
-        GTEST_SKIP() << "The sanitizer counts for itself.";
+        GTEST_SKIP() << "Allocations are the sanitizer's here.";
     }
     cpu::device device;
     const auto particles = ball(500, 0.05f, 0.2f, 0.5f, 1);

@@ -10,7 +10,7 @@ using support::allocations;
 
 TEST(cpu_device, steady_state_allocates_nothing) {
     if (!SKYBARK_TEST_COUNTS_ALLOCATIONS) {
-        GTEST_SKIP() << "A sanitizer has operators of its own.";
+        GTEST_SKIP() << "Allocations are the sanitizer's here.";
     }
     for (const std::uint32_t threads : {1u, 3u}) {
         cpu::device_options options;
@@ -27,7 +27,7 @@ TEST(cpu_device, steady_state_allocates_nothing) {
 
 TEST(cpu_device, counting_sees_an_allocation) {
     if (!SKYBARK_TEST_COUNTS_ALLOCATIONS) {
-        GTEST_SKIP() << "A sanitizer has operators of its own.";
+        GTEST_SKIP() << "Allocations are the sanitizer's here.";
     }
     const std::uint64_t before = allocations;
     ::operator delete(::operator new(1000)); // a new expression may be left out by the compiler

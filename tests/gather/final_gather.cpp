@@ -350,7 +350,7 @@ TEST(final_gather, counts_every_byte) {
 /// Once made, a gather allocates nothing on the host but what submissions and the sky do.
 TEST(final_gather, allocates_nothing_when_it_goes_on) {
     if (SKYBARK_TEST_COUNTS_ALLOCATIONS == 0) {
-        GTEST_SKIP() << "the sanitizer's own operators";
+        GTEST_SKIP() << "Allocations are the sanitizer's here.";
     }
     cpu::device device = with_threads(1);
     const lit_box box;

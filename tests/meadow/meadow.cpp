@@ -151,7 +151,7 @@ TEST_P(meadow_on, frames_leave_nothing_behind) {
 
 TEST(meadow, recording_takes_no_memory_from_the_host) {
     if (SKYBARK_TEST_COUNTS_ALLOCATIONS == 0) {
-        GTEST_SKIP() << "A sanitizer counts in its own way.";
+        GTEST_SKIP() << "Allocations are the sanitizer's here.";
     }
     cpu::device device;
     auto scene = grow(device);

@@ -331,7 +331,7 @@ TEST(sky, is_the_same_on_every_backend) {
 
 TEST(sky, allocates_nothing_on_the_host_in_a_frame) {
     if (!SKYBARK_TEST_COUNTS_ALLOCATIONS) {
-        GTEST_SKIP() << "The sanitizer counts for itself.";
+        GTEST_SKIP() << "Allocations are the sanitizer's here.";
     }
     cpu::device device;
     using B = cpu::device;
