@@ -3,7 +3,7 @@
 #include "growth.hpp"
 
 #include <scenes/random.hpp>
-#include <skybark/shared/leaf.hpp>
+#include <skybark/shared/surfaces.hpp>
 #include <skybark/trees/bark_texture.hpp>
 #include <skybark/trees/build_skeleton.hpp>
 #include <skybark/trees/leaf_texture.hpp>
@@ -339,6 +339,7 @@ trees::branch_layout thick_branches(const trees::skeleton& of, std::size_t count
 gather_material light_of(const material& of) {
     gather_material made;
     glm::vec3 sum(0);
+    glm::vec3 through(0);
     float covered = 0;
     for (std::size_t i = 0; i + 3 < of.texels.size(); i += 4) {
         const auto channel = [&](std::size_t c) {
@@ -348,17 +349,18 @@ gather_material light_of(const material& of) {
             sum += glm::mix(of.low, of.high, channel(3));
             covered += 1;
         } else if (channel(3) >= 0.5f) {
-            sum += glm::vec3(shared::leaf_linear(channel(0)), shared::leaf_linear(channel(1)),
-                             shared::leaf_linear(channel(2)));
+            const shared::leaf_surface blade = shared::leaf_surface_of(
+                glm::vec4(channel(0), channel(1), channel(2), 1), of.through);
+            sum += blade.reflected;
+            through += blade.through;
             covered += 1;
         }
     }
     made.diffuse = sum / std::max(covered, 1.0f);
     if (of.as == look::leaf) {
-        // As the leaf kernels have it: what comes through is yellower.
         made.two_sided = 1;
-        made.transmission = made.diffuse * glm::vec3(1.1f, 1.0f, 0.3f) * of.through;
-        made.transmission = glm::min(made.transmission, glm::vec3(1) - made.diffuse);
+        made.transmission =
+            glm::min(through / std::max(covered, 1.0f), glm::vec3(1) - made.diffuse);
     }
     return made;
 }
