@@ -7,10 +7,12 @@
 #include <skybark/clouds/cloud_billboards.hpp>
 #include <skybark/clouds/cloud_density.hpp>
 #include <skybark/clouds/cumulus.hpp>
+#include <skybark/clouds/drift.hpp>
 #include <skybark/clouds/harris.hpp>
 #include <skybark/clouds/light_box.hpp>
 #include <skybark/clouds/multiple_scattering.hpp>
 #include <skybark/clouds/phase.hpp>
+#include <skybark/clouds/torn_billboards.hpp>
 #include <skybark/core/backend.hpp>
 #include <skybark/core/validated.hpp>
 #include <skybark/gather/bounces.hpp>
