@@ -235,15 +235,21 @@ template <class Step>
 void sum_across(const two_sheets& rows, const volume_scan& how) {
     const auto* from = reinterpret_cast<const typename Step::in*>(rows.from);
     auto* to = reinterpret_cast<typename Step::out*>(rows.to);
-    for (std::uint32_t i = 0; i < rows.rows; ++i) {
-        if (how.axis == scan_axis::x) {
-            along_row<Step>(from, to, rows.columns, how.direction == scan_direction::descending,
-                            how.scale);
-        } else {
-            each_of_row<Step>(from, to, rows.columns, how.scale);
+    // Copies: what is written might be what the references refer to.
+    const std::uint64_t from_stride = rows.from_stride;
+    const std::uint64_t to_stride = rows.to_stride;
+    const std::uint32_t count = rows.rows;
+    const std::uint32_t columns = rows.columns;
+    const float scale = how.scale;
+    if (how.axis != scan_axis::x) {
+        for (std::uint32_t i = 0; i < count; ++i) {
+            each_of_row<Step>(from + i * from_stride, to + i * to_stride, columns, scale);
         }
-        from += rows.from_stride;
-        to += rows.to_stride;
+        return;
+    }
+    const bool descending = how.direction == scan_direction::descending;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        along_row<Step>(from + i * from_stride, to + i * to_stride, columns, descending, scale);
     }
 }
 
