@@ -198,8 +198,8 @@ class context {
     report about_;
 };
 
-/// A named case. `gate` is decided by the concepts that the backend models: what it cannot do isn't
-/// there.
+/// A named case. Which ones there are is decided by the concepts that the backend models: what it
+/// cannot do isn't there.
 template <backend B>
 struct suite_case {
     std::string pattern; ///< "map"
