@@ -5,7 +5,7 @@
 //     auto leaves = trees::place_leaves(skeleton, trees::leaves_of(species));
 //     auto air = trees::wind_field<B>::create(device, trees::segment_middles(skeleton),
 //                                             trees::kaimal_gusts{.speed = 8});
-//     auto tree = trees::swaying_tree<B>::create(device, skeleton, leaves, trees::furrowed_bark(1));
+//     auto tree = trees::swaying_tree<B>::create(device, skeleton, leaves, bark, {});
 //     run(device, [&](auto& recorder) {
 //         tree->advance(recorder, *air, seconds, 1.0f / 60);
 //         tree->mesh(recorder);
