@@ -61,7 +61,7 @@ vertices ring_of(const leaf_blade& kernel, const leaf& l, const segment_pose& po
     return out;
 }
 
-std::array<std::uint32_t, 18> pattern() {
+std::array<std::uint32_t, 18> index_pattern() {
     std::array<std::uint32_t, 18> p;
     for (std::uint32_t k = 0; k < 18; ++k) {
         p[k] = leaf_blade{}.ring_index(k);
@@ -70,7 +70,7 @@ std::array<std::uint32_t, 18> pattern() {
 }
 
 dvec3 twice_area(const vertices& v, std::size_t triangle) {
-    static const auto p = pattern();
+    static const auto p = index_pattern();
     const dvec3 a(v[p[3 * triangle]].position);
     return glm::cross(dvec3(v[p[3 * triangle + 1]].position) - a,
                       dvec3(v[p[3 * triangle + 2]].position) - a);
@@ -151,7 +151,7 @@ TEST(leaf_blade, keeps_its_midrib_under_any_fold) {
 // Counter-clockwise from above, and the bitangent is w · cross(normal, tangent): towards growing v.
 TEST(leaf_blade, triangles_face_the_way_of_their_normals) {
     support::random_source random(3);
-    const auto p = pattern();
+    const auto p = index_pattern();
     for (int i = 0; i < 100; ++i) {
         const leaf l = random_leaf(random);
         const vertices v = ring_of({}, l);
