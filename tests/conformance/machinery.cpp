@@ -52,7 +52,7 @@ TEST(machinery, a_comparison_says_first_and_worst) {
     const auto said = failures_of([&] {
         comparison check = c.compare("numbers");
         check.same(1, 1);
-        check.near(2.5, 2, 0.25);
+        check.close_to(2.5, 2, 0.25);
         check.same(10, 3);
         check.same(std::nan(""), std::nan(""));
     });

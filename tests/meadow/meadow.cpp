@@ -88,7 +88,7 @@ const pixels& on_the_cpu() {
 
 class meadow_on : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(backends, meadow_on, testing::Values("cpu", "opengl", "vulkan"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& each) { return std::string(each.param); });
 
 } // namespace
 

@@ -31,7 +31,7 @@ class tool_meadow : public tool {
 
 class tool_meadow_on : public tool_meadow, public testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(backends, tool_meadow_on, testing::Values("cpu", "opengl", "vulkan"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& each) { return std::string(each.param); });
 
 } // namespace
 
