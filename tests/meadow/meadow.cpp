@@ -109,10 +109,12 @@ TEST_P(meadow_on, one_picture_everywhere_and_every_time) {
     });
 }
 
-// Frames send parameters and bring nothing back; they make no buffer and no image, and the host
-// takes no memory from its first free frame on.
-TEST_P(meadow_on, frames_leave_nothing_behind) {
-    support::with_device(GetParam(), [](auto& device) {
+namespace {
+
+/// Frames send parameters and bring nothing back; what is kept for the next one is there after the
+/// second; and when the meadow goes, so does everything.
+void expect_nothing_left(const char* backend, int frames) {
+    support::with_device(backend, [&](auto& device) {
         const device_usage before = device.usage();
         {
             meadow::description what = small_meadow();
@@ -128,11 +130,11 @@ TEST_P(meadow_on, frames_leave_nothing_behind) {
             device_usage steady;
             device_traffic traffic;
             std::uint64_t up = 0;
-            for (int k = 0; k < 60; ++k) {
+            for (int k = 0; k < frames; ++k) {
                 scene.begin_frame(k / 60.0);
                 const auto done = run(device, [&](auto& to) { scene.record(to); });
                 ASSERT_TRUE(done) << done.error().message;
-                if (k < 2) { // what is kept for next time is there after the first
+                if (k < 2) {
                     steady = device.usage();
                 } else {
                     EXPECT_EQ(device.usage().objects, steady.objects) << "frame " << k;
@@ -148,6 +150,11 @@ TEST_P(meadow_on, frames_leave_nothing_behind) {
         EXPECT_EQ(device.usage().bytes, before.bytes);
     });
 }
+
+} // namespace
+
+TEST_P(meadow_on, frames_leave_nothing_behind) { expect_nothing_left(GetParam(), 6); }
+TEST_P(meadow_on, sixty_frames_leave_nothing_behind_slow) { expect_nothing_left(GetParam(), 60); }
 
 TEST(meadow, recording_takes_no_memory_from_the_host) {
     if (SKYBARK_TEST_COUNTS_ALLOCATIONS == 0) {
@@ -184,7 +191,8 @@ TEST(meadow, weather_shows) {
     now.sun_elevation = 4;
     ASSERT_TRUE(scene.change(now));
     const pixels evening = frame(device, scene, 0);
-    EXPECT_LT(luminance(evening), 0.8 * luminance(noon));
+    EXPECT_LT(luminance(evening), luminance(noon)) << "exposures make up for a part of it alone";
+    EXPECT_GT(between(evening, noon).mean, 5);
 
     now = clear;
     now.cloud = 0.7f;

@@ -93,7 +93,7 @@ TEST_F(tool_meadow, refuses_what_cannot_be) {
     expect_refused({"-o", in_folder("a_%d_%d.png")}, {"two places"});
     expect_refused({"-o", out, "--fps", "12"}, {"--fps", "%04d"});
     for (const auto& [option, values] : std::initializer_list<std::pair<const char*, words>>{
-             {"--seconds", {"-1", "nan", "1e9", ""}},
+             {"--seconds", {"-1", "nan", "1e9"}},
              {"--fps", {"0", "-1", "inf"}},
              {"--sun", {"1", "1,2,3", "0,-5", "0,91", "a,b", "nan,10"}},
              {"--turbidity", {"0", "11"}},
