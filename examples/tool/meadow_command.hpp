@@ -27,9 +27,20 @@ template <backend B>
     for (const meadow::stage which : meadow::stages) {
         job.time.begin(meadow::stage_names[static_cast<std::size_t>(which)]);
         show_progress(job, frame);
-        auto done = run(device, [&](auto& recorder) { scene.record(recorder, which); });
-        if (!done) {
-            return done;
+        bool again = true;
+        while (again) {
+            auto done = run(device, [&](auto& recorder) { scene.record(recorder, which); });
+            if (!done) {
+                return done;
+            }
+            again = false;
+            if (which == meadow::stage::mesh) { // once more where there was too little room
+                const auto grown = scene.update();
+                if (!grown) {
+                    return failure(grown.error());
+                }
+                again = *grown;
+            }
         }
     }
     return {};
