@@ -14,6 +14,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import textwrap
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -51,6 +52,11 @@ VULKAN = [
 # Formulas that the CPU backend computes four at a time.
 LANES = {"sway"}
 INCLUDE = re.compile(r'^#include\s+(?:"([^"]+)"|(KERNEL))\s*$')
+# The line that a struct or a function of shaders/shared and shaders/glsl begins with.
+ITEM = re.compile(r"(?:struct\s+(\w+)|\w+\s+(\w+)\()")
+# What callers' texts can be pasted into, and what else OpenGL ES asks for.
+CALLERS = ["#version 330", "#version 460",
+           "#version 310 es\nprecision highp float;\nprecision highp sampler3D;"]
 
 
 def flatten(path, kernel=None, seen=None):
@@ -127,8 +133,51 @@ def words(values):
     return "".join(lines).rstrip()
 
 
+def items(path, seen):
+    """{name: text} of each struct and function, with the comment above it, of a file and of those
+    that it includes, each file once."""
+    path, found, comment = path.resolve(), {}, []
+    if path in seen:
+        return found
+    seen.add(path)
+    lines = iter(path.read_text().splitlines())
+    for line in lines:
+        if include := INCLUDE.match(line):
+            found |= items(path.parent / include.group(1), seen)
+        elif begins := ITEM.match(line):
+            text = [line]
+            while not line.endswith("}") and not text[-1].startswith("}"):
+                text.append(next(lines))
+            found[begins.group(1) or begins.group(2)] = "\n".join(comment + text)
+        comment = comment + [line] if line.startswith("//") else []
+    return found
+
+
+def caller_text(path):
+    """A text of shaders/glsl whole: its functions, or those of what it includes where it has none
+    itself, and what they need. Each is in a guard of its own, so that a shader can hold several of
+    these texts, which share some."""
+    text = path.read_text()
+    known = items(path, set())
+    needed = [name for name in known if re.search(rf"^\w+ {name}\(", text, re.M)] or list(known)
+    for name in needed: # grows
+        needed += [n for n in re.findall(r"\w+", re.sub("//.*", "", known[name]))
+                   if n in known and n not in needed]
+    names = [name for name in known if name in needed]
+    defines = textwrap.fill("Defines " + ", ".join(names) + ".", 97, initial_indent="// ",
+                            subsequent_indent="// ")
+    guarded = [f"#ifndef SKYBARK_{name.upper()}\n#define SKYBARK_{name.upper()}\n{known[name]}\n#endif\n"
+               for name in names]
+    whole = "\n".join([text[: text.index("#include")] + "//\n" + defines + "\n", *guarded])
+    for sign, plain in {"−": "-", "²": "^2", "½": "1/2 ", "…": "..."}.items():
+        whole = whole.replace(sign, plain) # before GLSL 4.20 comments are ASCII, too
+    if not whole.isascii():
+        sys.exit(f"{path}: {''.join(set(c for c in whole if not c.isascii()))} is not ASCII.")
+    return whole
+
+
 class Header:
-    """One generated header: its inputs, and how its body is made when they have changed."""
+    """One generated file: its inputs, and how its body is made when they have changed."""
 
     def __init__(self, path, inputs, body):
         self.path = ROOT / path
@@ -140,10 +189,10 @@ class Header:
 
     def write(self):
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        self.path.write_text(
-            "// clang-format off\n// Made by shaders/embed.py. Edit the text in shaders/ instead.\n"
-            f"// sha256 {self.hash}\n#pragma once\n\n{self.body()}"
-        )
+        made = f"// Made by shaders/embed.py. Edit the text in shaders/ instead.\n// sha256 {self.hash}\n"
+        if self.path.suffix == ".hpp":
+            made = f"// clang-format off\n{made}#pragma once\n"
+        self.path.write_text(f"{made}\n{self.body()}")
 
 
 def shared_header(path):
@@ -253,6 +302,28 @@ def standalone_headers():
         yield Header(f"backends/skybark/{api}/programs/own_{name}.hpp", ["own 2", text], body)
 
 
+def caller_headers():
+    """shaders/glsl for callers: as a text to include where compilers can, and as a string."""
+    for path in sorted((HERE / "glsl").glob("*.glsl")):
+        name, text = path.stem, caller_text(path)
+
+        def body(name=name, text=text):
+            for version in CALLERS:
+                check_glsl(f"{version}\n{text}{text}void main() {{}}\n", "frag", name)
+            return text
+
+        def string(name=name, text=text):
+            comment = text[: text.index("\n\n") + 1].replace("// ", "/// ").replace("//\n", "///\n")
+            return (
+                "#include <string_view>\n\nnamespace skybark::glsl {\n\n"
+                f"{comment}inline constexpr std::string_view {name}{glsl(text)};\n\n"
+                "} // namespace skybark::glsl\n"
+            )
+
+        yield Header(f"include/skybark/glsl/{name}.glsl", ["caller 1", text], body)
+        yield Header(f"include/skybark/glsl/{name}.hpp", ["caller 1", text], string)
+
+
 def headers():
     for path in sorted((HERE / "shared").glob("*.glsl")):
         if path.stem != "records":
@@ -263,6 +334,7 @@ def headers():
         yield opengl_header(path)
         yield vulkan_header(path)
     yield from standalone_headers()
+    yield from caller_headers()
 
 
 def main():
@@ -274,9 +346,9 @@ def main():
             header.write()
         print(("stale: " if check else "wrote ") + str(header.path.relative_to(ROOT)))
     known = {h.path for h in headers()}
-    for folder in ("include/skybark/shared", "backends/skybark/opengl/programs",
+    for folder in ("include/skybark/shared", "include/skybark/glsl", "backends/skybark/opengl/programs",
                    "backends/skybark/vulkan/programs"):
-        for path in (ROOT / folder).glob("*.hpp"):
+        for path in (ROOT / folder).glob("*.*"):
             if path not in known and "// Made by shaders/embed.py" in path.read_text():
                 stale.append(path)
                 print(f"left over: {path.relative_to(ROOT)}")

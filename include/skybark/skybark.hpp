@@ -25,6 +25,10 @@
 #include <skybark/gather/irradiance_volume.hpp>
 #include <skybark/gather/lightmap.hpp>
 #include <skybark/gather/scene.hpp>
+#include <skybark/glsl/cloud_scattering.hpp>
+#include <skybark/glsl/cloud_shadow.hpp>
+#include <skybark/glsl/irradiance_volume.hpp>
+#include <skybark/glsl/phase.hpp>
 #include <skybark/trees/bark_mesh.hpp>
 #include <skybark/trees/bark_texture.hpp>
 #include <skybark/trees/branch_layout.hpp>

@@ -1,12 +1,12 @@
-// The shadow of a cloud on whatever asks: the attenuation volume read at a place in the world. For
-// a caller's own shader as well; with `volume` a sampler3D of the attenuation volume,
+// The shadow of a cloud on whatever asks: the attenuation volume read at a place in the world. With
+// `volume` a sampler3D of the attenuation volume,
 //
 //     vec3 at = cloud_texel(grid, vec3(textureSize(volume, 0)), place);
 //     float sun = cloud_light(textureLod(volume, at, 0.0).x);
 //
 // with linear filtering and clamped edges, is the part of the sun's light that reaches the place:
 // above the cloud and beside it 1, below it what is left by all that lies towards the sun, however
-// far below.
+// far below. shaders/glsl/cloud_shadow.glsl is that, for callers' own shaders.
 #include "records.glsl"
 #include "attenuation.glsl"
 

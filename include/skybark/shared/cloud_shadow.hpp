@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 607bc796175853df8157f7b59062e78f64289739dfbe9629a1002f7b651a8bae
+// sha256 ae33e813fe3f72e430bfe47b5ae054e06c7ea23655e228de6f8d114531c7b784
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -8,15 +8,15 @@
 
 namespace skybark::shared {
 
-// The shadow of a cloud on whatever asks: the attenuation volume read at a place in the world. For
-// a caller's own shader as well; with `volume` a sampler3D of the attenuation volume,
+// The shadow of a cloud on whatever asks: the attenuation volume read at a place in the world. With
+// `volume` a sampler3D of the attenuation volume,
 //
 //     vec3 at = cloud_texel(grid, vec3(textureSize(volume, 0)), place);
 //     float sun = cloud_light(textureLod(volume, at, 0.0).x);
 //
 // with linear filtering and clamped edges, is the part of the sun's light that reaches the place:
 // above the cloud and beside it 1, below it what is left by all that lies towards the sun, however
-// far below.
+// far below. shaders/glsl/cloud_shadow.glsl is that, for callers' own shaders.
 
 // Texture coordinates of a place. `voxels` are the sides of the volume in voxels.
 inline vec3 cloud_texel(light_grid grid, vec3 voxels, vec3 place) {
