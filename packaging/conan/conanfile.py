@@ -46,8 +46,9 @@ class Skybark(ConanFile):
     def package(self):
         copy(self, "LICENSE", self.source_folder, str(Path(self.package_folder) / "licenses"))
         for root in ("include", "backends"): # the two become one
-            copy(self, "*.hpp", str(Path(self.source_folder) / root),
-                 str(Path(self.package_folder) / "include"))
+            for pattern in ("*.hpp", "*.glsl"):
+                copy(self, pattern, str(Path(self.source_folder) / root),
+                     str(Path(self.package_folder) / "include"))
 
     def package_info(self):
         self.cpp_info.set_property("cmake_file_name", "skybark")

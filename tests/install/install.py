@@ -21,6 +21,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+SHADERS = "Skybark's functions in your shaders" # the heading
 SAYS = "A trunk of 60 triangles.\n" # three gaps of 2 · 8, and two caps of 6
 WARNINGS = ["-Wall", "-Wextra", "-Werror"]
 # What the library is made of; an archive of a release holds more.
@@ -110,12 +111,22 @@ def install(project):
 # ---- The ways --------------------------------------------------------------------------------------
 
 
+def add_shader(project, lists):
+    """The lists with the shader of docs/including.md; without, where there is nothing to compile it."""
+    project.write("ground.frag", snippets("glsl", SHADERS)[0])
+    if not shutil.which("glslangValidator"):
+        print("glslangValidator isn't installed: no shader is compiled.")
+        return lists
+    return lists + snippets("cmake", SHADERS)[0]
+
+
 def find_package(project, folder):
     here = f"-DCMAKE_PREFIX_PATH={install(project)}"
     lists = snippets("cmake", "find_package")[0]
-    project.write("CMakeLists.txt", lists)
+    project.write("CMakeLists.txt", add_shader(project, lists))
     project.run(snippets("sh", "find_package")[1])
     project.expect()
+    check_shader(project, "build/ground.spv")
 
     # Refusals are sentences.
     def refuse(expected, version="0.1", components="cpu", *arguments):
@@ -157,6 +168,12 @@ def pkg_config(project, folder):
         project.run(command, **path)
         if project.run("pkg-config --modversion skybark", **path).strip() != project.options.version:
             fail("pkg-config knows another version.")
+        # A shader of the caller's, here and without an installation.
+        if add_shader(project, ""):
+            for shader_command in snippets("sh", SHADERS)[0].splitlines():
+                project.run(shader_command, **path)
+                check_shader(project, "ground.spv")
+                (project.folder / "ground.spv").unlink()
     project.expect("meadow")
 
     # The one for paths with spaces, with less to compile.
@@ -171,14 +188,17 @@ def fetch_content(project, folder):
     with tarfile.open(archive, "w:gz", compresslevel=1) as tar:
         for source in SOURCES:
             tar.add(ROOT / source, f"{name}/{source}")
-    project.build_and_run(snippets("cmake", "FetchContent")[0], f"-DSKYBARK_ARCHIVE=file://{archive}",
+    lists = add_shader(project, snippets("cmake", "FetchContent")[0])
+    project.build_and_run(lists, f"-DSKYBARK_ARCHIVE=file://{archive}",
                           "-DCMAKE_POLICY_DEFAULT_CMP0135=NEW")
+    check_shader(project, "build/ground.spv")
 
 
 def add_subdirectory(project, folder):
     (project.folder / "third_party").mkdir()
     (project.folder / "skybark").rename(project.folder / "third_party/skybark")
-    project.build_and_run(snippets("cmake", "add_subdirectory")[0])
+    project.build_and_run(add_shader(project, snippets("cmake", "add_subdirectory")[0]))
+    check_shader(project, "build/ground.spv")
     targets = project.run(["cmake", "--build", "build", "--target", "help"])
     if re.search(r"skybark_tool|test_|skybark_benchmarks|single_headers", targets):
         fail(targets, "As a part of another project it builds programs of its own.")
@@ -220,6 +240,13 @@ bool second() { return skybark::cpu::device().create_buffer(16) && skybark::vulk
     project.expect("meadow")
 
 
+def check_shader(project, name):
+    """SPIR-V begins with its number."""
+    path = project.folder / name
+    if shutil.which("glslangValidator") and path.read_bytes()[:4] != bytes([3, 2, 35, 7]):
+        fail(f"{name} is no SPIR-V.")
+
+
 # ---- The Debian package ----------------------------------------------------------------------------
 
 PACKAGE = "libskybark-dev"
@@ -241,7 +268,8 @@ def check_package(project, package):
     listed = project.run(["dpkg-deb", "-c", package]).splitlines()
     files = {line.split()[-1][1:]: line.split()[0] for line in listed if not line.endswith("/")}
     expected = {"/usr/include/" + path.relative_to(ROOT / root).as_posix()
-                for root in ("include", "backends") for path in (ROOT / root).rglob("*.hpp")}
+                for root in ("include", "backends")
+                for suffix in ("hpp", "glsl") for path in (ROOT / root).rglob(f"*.{suffix}")}
     expected |= {f"/usr/share/cmake/skybark/skybark-{name}.cmake"
                  for name in ("config", "config-version", "targets", "cpu", "opengl", "vulkan", "conformance")}
     expected |= {"/usr/share/pkgconfig/skybark.pc", f"/usr/share/doc/{PACKAGE}/copyright",
@@ -266,10 +294,11 @@ def debian_package(project, folder):
     if not changelog.startswith(f"skybark ({project.options.version}) "):
         fail("packaging/debian/changelog begins with another version.")
 
-    lists = snippets("cmake", "find_package")[0]
+    lists = add_shader(project, snippets("cmake", "find_package")[0])
     if os.geteuid() != 0 or installed_files():
         print(f"Unpacked only: {'it is installed' if installed_files() else 'only root can install it'}.")
         project.build_and_run(lists, f"-DCMAKE_PREFIX_PATH={unpacked / 'usr'}")
+        check_shader(project, "build/ground.spv")
         return
     try:
         project.run(["dpkg", "-i", package], DEBIAN_FRONTEND="noninteractive")
