@@ -11,6 +11,7 @@
 #include <skybark/clouds/harris.hpp>
 #include <skybark/clouds/light_box.hpp>
 #include <skybark/clouds/multiple_scattering.hpp>
+#include <skybark/clouds/particles.hpp>
 #include <skybark/clouds/phase.hpp>
 #include <skybark/clouds/torn_billboards.hpp>
 #include <skybark/core/backend.hpp>
