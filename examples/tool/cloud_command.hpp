@@ -8,8 +8,8 @@
 #include <skybark/clouds/attenuation_volume.hpp>
 #include <skybark/clouds/cloud_density.hpp>
 #include <skybark/clouds/harris.hpp>
+#include <skybark/clouds/light_at_points.hpp>
 #include <skybark/clouds/multiple_scattering.hpp>
-#include <skybark/kernels/light_at_points.hpp>
 
 #include <glm/gtc/packing.hpp>
 #include <numbers>
@@ -191,10 +191,9 @@ class cloud_maker {
         }
         job_.box = lit->box;
         std::vector<io::probed_light> found(job_.points.size());
-        kernels::light_at_points kernel;
-        kernel.grid = lit->box.grid;
-        auto done = look_up(kernel, lit->volume.volume(), lit->volume.volume(),
-                            [&](std::size_t i, glm::vec4 at) { found[i].optical_depth = at.x; });
+        auto done = look_up(lit->volume, nullptr, {}, [&](std::size_t i, glm::vec4 at) {
+            found[i].optical_depth = at.x;
+        });
         if (done && light_of_volume() != clouds::attenuation_light::extinction) {
             done = relight(*lit, light_of_volume());
         }
@@ -205,12 +204,11 @@ class cloud_maker {
                 return failure(made.error());
             }
             diffuse.emplace(std::move(*made));
-            kernel.diffuse = lit->box.grid.voxel.x / diffuse->grid(lit->box).voxel.x;
         }
         if (done) {
-            kernel.octaves = options_.light == cloud_light::octaves ? options_.octaves : 1;
-            done = look_up(kernel, lit->volume.volume(),
-                           diffuse ? diffuse->fluence() : lit->volume.volume(),
+            clouds::light_at_options how;
+            how.octaves = options_.light == cloud_light::octaves ? options_.octaves : 1;
+            done = look_up(lit->volume, diffuse ? &*diffuse : nullptr, how,
                            [&](std::size_t i, glm::vec4 at) { found[i].light = at.y; });
         }
         if (!done) {
@@ -222,9 +220,9 @@ class cloud_maker {
 
     /// Calls `take(i, {attenuation, light, …})` for each point.
     template <class Take>
-    [[nodiscard]] result<void> look_up(const kernels::light_at_points& kernel,
-                                       const typename B::volume& attenuation,
-                                       const typename B::volume& diffuse, Take&& take) {
+    [[nodiscard]] result<void> look_up(const clouds::attenuation_volume<B>& sun,
+                                       const clouds::multiple_scattering<B>* diffuse,
+                                       const clouds::light_at_options& how, Take&& take) {
         job_.time.begin("draw");
         constexpr std::size_t most = std::size_t{1} << 20u;
         const std::size_t chunk = std::min(job_.points.size(), most);
@@ -233,8 +231,6 @@ class cloud_maker {
         if (!places || !found) {
             return failure(!places ? places.error() : found.error());
         }
-        volume_bindings<B, kernels::light_at_points> volumes;
-        volumes.read = {&attenuation, &diffuse};
         std::vector<glm::vec4> some;
         for (std::size_t first = 0; first < job_.points.size(); first += chunk) {
             some.clear();
@@ -243,10 +239,13 @@ class cloud_maker {
             }
             auto done = device_.upload(*places, 0, std::as_bytes(std::span(some)));
             if (done) {
+                result<void> recorded;
                 done = run(device_, [&](typename B::recorder& to) {
-                    to.map(kernel, {view<B>(*places), view<B>(*found)}, volumes,
-                           range{0, static_cast<std::uint32_t>(some.size())});
+                    recorded = clouds::record_light_at(
+                        to, device_.limits(), sun, diffuse, view<B>(*places),
+                        static_cast<std::uint32_t>(some.size()), view<B>(*found), how);
                 });
+                done = recorded ? done : recorded;
             }
             if (done) {
                 done = read_back<B, glm::vec4>(device_, *found, std::span(some));

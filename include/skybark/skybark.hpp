@@ -9,6 +9,7 @@
 #include <skybark/clouds/cumulus.hpp>
 #include <skybark/clouds/drift.hpp>
 #include <skybark/clouds/harris.hpp>
+#include <skybark/clouds/light_at_points.hpp>
 #include <skybark/clouds/light_box.hpp>
 #include <skybark/clouds/multiple_scattering.hpp>
 #include <skybark/clouds/particles.hpp>

@@ -11,13 +11,13 @@ float bilinear(float v00, float v10, float v01, float v11, float x, float z) {
 }
 
 // The mean light of octaves, each with `weight` and `part` of the attenuation of the one before.
-// One octave: the light that comes through.
+// One octave: the light that comes through, and so it is for none.
 float octaves_light(float attenuation, uint octaves, float weight, float part) {
-    float sum = 0.0f;
-    float weights = 0.0f;
-    float w = 1.0f;
-    float depth = attenuation;
-    for (uint i = 0u; i < octaves; i = i + 1u) {
+    float sum = cloud_light(attenuation);
+    float weights = 1.0f;
+    float w = weight;
+    float depth = attenuation * part;
+    for (uint i = 1u; i < octaves; i = i + 1u) {
         sum = sum + w * cloud_light(depth);
         weights = weights + w;
         w = w * weight;

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5cda12c8dbdd7971cd1043964debc2816739166967145533c86978901a2b05c4
+// sha256 a2dcfa1e8e91d61111b282bb45bee7e3ee269eced1968f1c139ac50136ac2db5
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -19,13 +19,13 @@ inline float bilinear(float v00, float v10, float v01, float v11, float x, float
 }
 
 // The mean light of octaves, each with `weight` and `part` of the attenuation of the one before.
-// One octave: the light that comes through.
+// One octave: the light that comes through, and so it is for none.
 inline float octaves_light(float attenuation, uint octaves, float weight, float part) {
-    float sum = 0.0f;
-    float weights = 0.0f;
-    float w = 1.0f;
-    float depth = attenuation;
-    for (uint i = 0u; i < octaves; i = i + 1u) {
+    float sum = cloud_light(attenuation);
+    float weights = 1.0f;
+    float w = weight;
+    float depth = attenuation * part;
+    for (uint i = 1u; i < octaves; i = i + 1u) {
         sum = sum + w * cloud_light(depth);
         weights = weights + w;
         w = w * weight;

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 28a8676b4cf0431a5d14ef67b9cf0ef97dec5d96b43a3bd191a5bc5d8ebc94b0
+// sha256 86bc4652ff4c74f7affc36fc2bd9c9657ddcb11cc1a0531503c70094a727040d
 #pragma once
 
 #include <skybark/kernels/light_at_points.hpp>
@@ -289,11 +289,11 @@ float back = v01 + (v11 - v01) * x;
 return front + (back - front) * z;
 }
 float octaves_light(float attenuation, uint octaves, float weight, float part) {
-float sum = 0.0f;
-float weights = 0.0f;
-float w = 1.0f;
-float depth = attenuation;
-for (uint i = 0u; i < octaves; i = i + 1u) {
+float sum = cloud_light(attenuation);
+float weights = 1.0f;
+float w = weight;
+float depth = attenuation * part;
+for (uint i = 1u; i < octaves; i = i + 1u) {
 sum = sum + w * cloud_light(depth);
 weights = weights + w;
 w = w * weight;
@@ -348,7 +348,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 9362};
+)glsl", 9391};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -630,11 +630,11 @@ float back = v01 + (v11 - v01) * x;
 return front + (back - front) * z;
 }
 float octaves_light(float attenuation, uint octaves, float weight, float part) {
-float sum = 0.0f;
-float weights = 0.0f;
-float w = 1.0f;
-float depth = attenuation;
-for (uint i = 0u; i < octaves; i = i + 1u) {
+float sum = cloud_light(attenuation);
+float weights = 1.0f;
+float w = weight;
+float depth = attenuation * part;
+for (uint i = 1u; i < octaves; i = i + 1u) {
 sum = sum + w * cloud_light(depth);
 weights = weights + w;
 w = w * weight;
@@ -688,7 +688,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 9377};
+)glsl", 9406};
 };
 
 } // namespace skybark::opengl
