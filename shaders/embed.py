@@ -56,7 +56,7 @@ INCLUDE = re.compile(r'^#include\s+(?:"([^"]+)"|(KERNEL))\s*$')
 ITEM = re.compile(r"(?:struct\s+(\w+)|\w+\s+(\w+)\()")
 # What callers' texts can be pasted into, and what else OpenGL ES asks for.
 CALLERS = ["#version 330", "#version 460",
-           "#version 310 es\nprecision highp float;\nprecision highp sampler3D;"]
+           "#version 300 es\nprecision highp float;\nprecision highp sampler3D;"]
 
 
 def flatten(path, kernel=None, seen=None):

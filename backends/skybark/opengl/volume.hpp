@@ -25,7 +25,9 @@ class volume {
 
     [[nodiscard]] volume_description description() const noexcept { return description_; }
     /// The object's OpenGL name, to use it elsewhere: a GL_TEXTURE_3D of GL_R32I, GL_R32F or
-    /// GL_R16F, its one level immutable.
+    /// GL_R16F, its one level immutable. Its parameters are OpenGL's defaults and the caller's to
+    /// change: patterns sample by sampler objects. What is called after a pattern sees what it
+    /// wrote; glMemoryBarrier has been called.
     [[nodiscard]] gl::handle name() const noexcept { return name_; }
 
   private:

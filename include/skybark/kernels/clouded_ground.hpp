@@ -3,7 +3,7 @@
 //
 // The shadow is the attenuation volume that lights the clouds, read where the ground is: the second
 // use of it that Shimada et al. 2008 name (section 5). Any kernel or shader can do the same, by
-// shaders/shared/cloud_shadow.glsl.
+// skybark/glsl/cloud_shadow.glsl.
 
 #include <skybark/kernels/scene.hpp>
 #include <skybark/shared/cloud_shadow.hpp>
