@@ -51,10 +51,10 @@ class volume {
         return parts_.foreign.description;
     }
     [[nodiscard]] VkImage handle() const noexcept { return parts_.foreign.image; }
-    /// All of it, 3-D, for descriptors of the caller's own pipelines: sampled or storage, a volume of
-    /// ours in VK_IMAGE_LAYOUT_GENERAL. What the caller records behind `finish`, or submits to the
-    /// queue after `submit`, sees what was written, and needs no barrier; nor is one needed before
-    /// the next recording, which waits for what reads it.
+    /// All of it, 3-D, for descriptors of the caller's own pipelines: sampled or storage, a volume
+    /// of ours in VK_IMAGE_LAYOUT_GENERAL. What the caller records behind `finish`, or submits to
+    /// the queue after `submit`, sees what was written, and needs no barrier; nor is one needed
+    /// before the next recording, which waits for what reads it.
     [[nodiscard]] VkImageView view() const noexcept { return parts_.view; }
     [[nodiscard]] bool is_foreign() const noexcept { return !parts_.owned; }
     [[nodiscard]] const foreign_volume& foreign() const noexcept { return parts_.foreign; }
