@@ -512,7 +512,7 @@ TEST(light_box, refuses_what_makes_no_sense) {
     EXPECT_EQ(message([](auto& p) { p.clear(); }),
               "The cloud has no particles; expected one at least.");
     EXPECT_EQ(message([&](auto& p) { p[1].radius = nan; }),
-              "Particle 1 has the radius nan; expected a number of metres above 0, up to 1e15.");
+              "Particle 1 has the radius nan; expected a number of metres from 1e-6 to 1e15.");
     EXPECT_NE(message([&](auto& p) { p[2].radius = -1; }).find("Particle 2"), std::string::npos);
     EXPECT_NE(message([&](auto& p) { p[2].radius = 0; }).find("radius"), std::string::npos);
     EXPECT_NE(message([&](auto& p) { p[0].optical_depth = -0.1f; }).find("optical depth"),

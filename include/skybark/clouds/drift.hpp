@@ -102,17 +102,22 @@ struct drift_bounds {
             return failure(done.error());
         }
     }
-    if (!(bounds.reach > 0 && bounds.reach <= 1e9f && bounds.high > bounds.low &&
-          bounds.high - bounds.low <= 1e9f && bounds.deepest >= 0 && bounds.deepest <= 1e12f &&
-          bounds.largest_radius >= 0)) {
+    const float height = bounds.high - bounds.low;
+    if (!(bounds.reach >= detail::smallest_cloud && bounds.reach <= 1e9f &&
+          height >= detail::smallest_cloud && height <= 1e9f && bounds.deepest >= 0 &&
+          bounds.deepest <= 1e12f && bounds.largest_radius >= 0 &&
+          bounds.largest_radius <= 0.501f * std::min(height, 2 * bounds.reach))) {
         return fail(error_code::bad_input,
                     std::string("Clouds within ")
-                        .append(std::to_string(bounds.reach))
+                        .append(detail::number_text(bounds.reach))
                         .append(" m, ")
-                        .append(std::to_string(bounds.high - bounds.low))
-                        .append(" m high and of optical depth up to ")
-                        .append(std::to_string(bounds.deepest))
-                        .append(" cannot be lit; expected finite sizes above 0."));
+                        .append(detail::number_text(height))
+                        .append(" m high, of optical depth up to ")
+                        .append(detail::number_text(bounds.deepest))
+                        .append(" and of particles up to ")
+                        .append(detail::number_text(bounds.largest_radius))
+                        .append(" m cannot be lit; expected sizes from 1e-6 to 1e9 m, a depth from "
+                                "0 to 1e12 and radii of half the height at most."));
     }
     const std::array<glm::dvec3, 3> axes = detail::light_axes(to_sun);
     const glm::dvec3 middle(bounds.centre.x, 0.5 * (double{bounds.low} + double{bounds.high}),
@@ -126,6 +131,9 @@ struct drift_bounds {
                              std::abs(axis.y) * 0.5 * (double{bounds.high} - double{bounds.low});
         low[a] = glm::dot(axis, middle) - reach;
         high[a] = glm::dot(axis, middle) + reach;
+    }
+    if (auto done = detail::check_distance(low, high, voxels); !done) {
+        return failure(done.error());
     }
     return light_box{
         detail::place_grid(axes, low, high, voxels, detail::quantum_for(double{bounds.deepest})),
@@ -148,6 +156,13 @@ class drifting_particles {
                                                    .append(" particles ")
                                                    .append(std::to_string(middles.size()))
                                                    .append(" have a middle; expected all."));
+        }
+        if (!(std::abs(box.centre.x) <= 1e9f && std::abs(box.centre.y) <= 1e9f)) {
+            return fail(error_code::bad_input, std::string("Clouds cannot drift around (")
+                                                   .append(detail::number_text(box.centre.x))
+                                                   .append(", ")
+                                                   .append(detail::number_text(box.centre.y))
+                                                   .append("); expected metres up to 1e9."));
         }
         if (!(box.side > 0 && box.side <= 1e7f && box.inner >= 0 && box.inner < box.outer &&
               box.outer <= 0.5f * box.side)) {

@@ -22,8 +22,8 @@
 namespace skybark::clouds {
 
 struct harris_options {
-    float sigmas = 3;  ///< standard deviations of the Gaussian in a particle's radius
-    float forward = 0; ///< the phase function straight on, 1 over the sphere
+    float sigmas = 3;  ///< standard deviations of the Gaussian in a particle's radius, up to 9
+    float forward = 0; ///< the phase function straight on, 1 over the sphere: 0…1e6
 };
 
 template <backend B>
@@ -42,6 +42,26 @@ class harris_light {
                             std::to_string(rows) + " pixels for " + std::to_string(most_particles) +
                             " particles was asked for; expected sides from 1 to 16384 and one "
                             "particle at least.");
+        }
+        if (!(options.sigmas > 0 && options.sigmas <= 9 && options.forward >= 0 &&
+              options.forward <= 1e6f)) {
+            return fail(error_code::bad_input,
+                        std::string("Harris's light was asked for with ")
+                            .append(detail::number_text(options.sigmas))
+                            .append(" standard deviations in a radius and ")
+                            .append(detail::number_text(options.forward))
+                            .append(" straight on; expected above 0 to 9, and 0 to 1e6."));
+        }
+        const device_limits limits = device.limits();
+        const std::uint64_t most =
+            std::min(limits.max_buffer_bytes / sizeof(cloud_particle), limits.max_elements);
+        if (most_particles > most) {
+            return fail(error_code::bad_input,
+                        std::string("Harris's light of ")
+                            .append(std::to_string(most_particles))
+                            .append(" particles was asked for; this device lights up to ")
+                            .append(std::to_string(most))
+                            .append("."));
         }
         harris_light made(device, columns, rows, most_particles, options);
         const std::uint64_t pixels = std::uint64_t{columns} * rows;

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
@@ -93,13 +94,56 @@ namespace detail {
     return grid;
 }
 
+/// The shortest text that is read as the same float.
+[[nodiscard]] inline std::string number_text(float value) {
+    char text[32];
+    return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+/// "1 x 2 x 3"
+[[nodiscard]] inline std::string size_text(glm::vec3 size) {
+    return number_text(size.x)
+        .append(" x ")
+        .append(number_text(size.y))
+        .append(" x ")
+        .append(number_text(size.z));
+}
+
 [[nodiscard]] inline result<void> check_sun(glm::vec3 to_sun) {
-    const float size = glm::dot(to_sun, to_sun);
-    if (!(size > 1e-12f) || !std::isfinite(size)) {
+    const glm::dvec3 to(to_sun); // squares of any floats are doubles
+    const double size = glm::dot(to, to);
+    if (!(size > 0) || !std::isfinite(size)) {
         return fail(error_code::bad_input,
-                    "The direction to the sun is (" + std::to_string(to_sun.x) + ", " +
-                        std::to_string(to_sun.y) + ", " + std::to_string(to_sun.z) +
-                        "); expected a finite vector that is not zero.");
+                    std::string("The direction to the sun is (")
+                        .append(number_text(to_sun.x))
+                        .append(", ")
+                        .append(number_text(to_sun.y))
+                        .append(", ")
+                        .append(number_text(to_sun.z))
+                        .append("); expected a finite vector that is not zero."));
+    }
+    return {};
+}
+
+/// Particles and clouds, m: their squares and what is divided by them stay floats.
+inline constexpr float smallest_cloud = 1e-6f;
+inline constexpr float largest_cloud = 1e15f;
+
+/// Whether [low, high] in the light's frame is near enough to the world's origin for its voxels to
+/// have places: doubles leave 2^-12 of a voxel at this distance.
+[[nodiscard]] inline result<void> check_distance(glm::dvec3 low, glm::dvec3 high,
+                                                 glm::uvec3 voxels) {
+    const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high));
+    const glm::dvec3 side = (high - low) / (glm::dvec3(voxels) - 3.0);
+    const double farthest = std::max({far.x, far.y, far.z});
+    const double finest = std::min({side.x, side.y, side.z});
+    if (!(farthest <= 0x1p40 * finest)) {
+        return fail(error_code::bad_input,
+                    std::string("The cloud reaches ")
+                        .append(number_text(static_cast<float>(farthest)))
+                        .append(" m from the world's origin, and its voxels would be ")
+                        .append(number_text(static_cast<float>(finest)))
+                        .append(" m; expected voxels of 1e-12 of that distance at least."));
     }
     return {};
 }
@@ -156,19 +200,25 @@ class column_depths {
         return fail(error_code::bad_input, "The cloud has no particles; expected one at least.");
     }
     const auto wrong = [](std::size_t i, const char* what, float value, const char* expected) {
-        return fail(error_code::bad_input, "Particle " + std::to_string(i) + " has " + what + " " +
-                                               std::to_string(value) + "; expected " + expected +
-                                               ".");
+        return fail(error_code::bad_input, std::string("Particle ")
+                                               .append(std::to_string(i))
+                                               .append(" has ")
+                                               .append(what)
+                                               .append(" ")
+                                               .append(detail::number_text(value))
+                                               .append("; expected ")
+                                               .append(expected)
+                                               .append("."));
     };
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const cloud_particle& p = particles[i];
         for (int a = 0; a < 3; ++a) {
-            if (!(std::abs(p.position[a]) <= 1e15f)) {
+            if (!(std::abs(p.position[a]) <= detail::largest_cloud)) {
                 return wrong(i, "the coordinate", p.position[a], "a number of metres up to 1e15");
             }
         }
-        if (!(p.radius > 0 && p.radius <= 1e15f)) {
-            return wrong(i, "the radius", p.radius, "a number of metres above 0, up to 1e15");
+        if (!(p.radius >= detail::smallest_cloud && p.radius <= detail::largest_cloud)) {
+            return wrong(i, "the radius", p.radius, "a number of metres from 1e-6 to 1e15");
         }
         if (!(p.optical_depth >= 0 && p.optical_depth <= 1e6f)) {
             return wrong(i, "the optical depth", p.optical_depth, "a number from 0 to 1e6");
@@ -183,7 +233,8 @@ class column_depths {
 /// Fits a box of `voxels` (each side 4 or more) tightly around the particles, its y axis towards
 /// the sun (of any length, straight up and level included). The quantum is the finest that the
 /// deepest column allows. Host time: two passes over the particles.
-/// Errors: bad_input for a particle, a direction or a size that makes no sense.
+/// Errors: bad_input for a particle, a direction or a size that makes no sense, and for a cloud so
+/// far from the world's origin that its voxels have no places there.
 [[nodiscard]] inline result<light_box> fit_light_box(std::span<const cloud_particle> particles,
                                                      glm::vec3 to_sun, glm::uvec3 voxels) {
     for (const result<void>& done :
@@ -206,6 +257,9 @@ class column_depths {
         high = glm::max(high, at + double(p.radius));
         box.largest_radius = std::max(box.largest_radius, p.radius);
     }
+    if (auto done = detail::check_distance(low, high, voxels); !done) {
+        return failure(done.error());
+    }
     detail::column_depths columns({low.x, low.z}, {high.x, high.z});
     for (const cloud_particle& p : particles) {
         const glm::dvec3 at = along(p.position);
@@ -225,13 +279,25 @@ class column_depths {
         }
     }
     const glm::vec3 size = bounds.high - bounds.low;
-    if (!(size.x > 0 && size.y > 0 && size.z > 0 && std::isfinite(glm::dot(size, size))) ||
-        !(bounds.deepest >= 0 && bounds.deepest <= 1e12f) || !(bounds.largest_radius >= 0)) {
+    const float smallest = std::min({size.x, size.y, size.z});
+    const bool sizes = smallest >= detail::smallest_cloud && size.x <= detail::largest_cloud &&
+                       size.y <= detail::largest_cloud && size.z <= detail::largest_cloud;
+    if (!sizes || !(bounds.deepest >= 0 && bounds.deepest <= 1e12f)) {
         return fail(error_code::bad_input,
-                    "A cloud of " + std::to_string(size.x) + " x " + std::to_string(size.y) +
-                        " x " + std::to_string(size.z) + " m and optical depth up to " +
-                        std::to_string(bounds.deepest) +
-                        " cannot be lit; expected finite sizes above 0.");
+                    std::string("A cloud of ")
+                        .append(detail::size_text(size))
+                        .append(" m and optical depth up to ")
+                        .append(detail::number_text(bounds.deepest))
+                        .append(" cannot be lit; expected sides from 1e-6 to 1e15 m and a depth "
+                                "from 0 to 1e12."));
+    }
+    if (!(bounds.largest_radius >= 0 && bounds.largest_radius <= 0.501f * smallest)) {
+        return fail(error_code::bad_input,
+                    std::string("A cloud of ")
+                        .append(detail::size_text(size))
+                        .append(" m, with the radii, has a largest radius of ")
+                        .append(detail::number_text(bounds.largest_radius))
+                        .append(" m; expected from 0 to half the shortest side."));
     }
     const std::array<glm::dvec3, 3> axes = detail::light_axes(to_sun);
     const glm::dvec3 middle = (glm::dvec3(bounds.low) + glm::dvec3(bounds.high)) * 0.5;
@@ -243,6 +309,9 @@ class column_depths {
         const double reach = glm::dot(glm::abs(axis), half);
         low[a] = glm::dot(axis, middle) - reach;
         high[a] = glm::dot(axis, middle) + reach;
+    }
+    if (auto done = detail::check_distance(low, high, voxels); !done) {
+        return failure(done.error());
     }
     return light_box{
         detail::place_grid(axes, low, high, voxels, detail::quantum_for(double(bounds.deepest))),

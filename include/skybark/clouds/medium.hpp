@@ -53,6 +53,28 @@ struct majorant_cells {
     [[nodiscard]] glm::dvec3 high() const { return low + side * glm::dvec3(count); }
 };
 
+namespace detail {
+
+/// A flight takes a step for each unit of its cell's majorant: with more than this many through one
+/// cell it would hardly come to an end.
+inline constexpr double most_steps_through_a_cell = 1e6;
+
+[[nodiscard]] inline result<void> check_steps(const majorant_cells& cells) {
+    const double steps =
+        glm::length(cells.side) * *std::max_element(cells.majorant.begin(), cells.majorant.end());
+    if (!(steps <= most_steps_through_a_cell)) {
+        return fail(error_code::bad_input,
+                    std::string("A cloud can't be traced whose densest matter, all through a cell "
+                                "of ") +
+                        std::to_string(cells.side.x) + " x " + std::to_string(cells.side.y) +
+                        " x " + std::to_string(cells.side.z) + " m, would have a depth of " +
+                        std::to_string(steps) + "; at most 1e6 is wanted.");
+    }
+    return {};
+}
+
+} // namespace detail
+
 template <class M>
 concept medium = requires(const M& m, const glm::dvec3& p, std::size_t cell, double length) {
     { m.cells() } -> std::same_as<const majorant_cells&>;
@@ -124,16 +146,17 @@ class cell_walk {
 /// A cloud of Gaussian particles.
 class gaussian_medium {
   public:
-    /// `sigmas`: radius over standard deviation, > 0; `cut`: where the water ends, in standard
-    /// deviations, > 0. Errors: bad_input where a particle is no number, its radius isn't positive
-    /// or a depth is negative or over 1e4, an albedo is outside of 0…1, or there is no particle.
+    /// `sigmas`: radius over standard deviation, > 0…100; `cut`: where the water ends, in standard
+    /// deviations, 0.1…8. Errors: bad_input where a particle is no number, its radius is below 1e-6
+    /// m or a depth is negative or over 1e4, an albedo is outside of 0…1, or there is no particle;
+    /// where particles are as small and deep, beside far larger ones, that a path wouldn't end.
     [[nodiscard]] static result<gaussian_medium> create(std::span<const cloud_particle> particles,
                                                         double sigmas = 3, double cut = 4) {
-        if (!(sigmas > 0 && sigmas < 1e6 && cut > 0 && cut <= 8)) {
+        if (!(sigmas > 0 && sigmas <= 100 && cut >= 0.1 && cut <= 8)) {
             return fail(error_code::bad_input,
                         std::string("A particle of ") + std::to_string(sigmas) +
                             " standard deviations that ends at " + std::to_string(cut) +
-                            " of them is none: positive, and at most 8, are wanted.");
+                            " of them is none: above 0 to 100, and 0.1 to 8, are wanted.");
         }
         if (particles.empty()) {
             return fail(error_code::bad_input, "A cloud to trace needs a particle.");
@@ -144,12 +167,12 @@ class gaussian_medium {
             const cloud_particle& p = particles[i];
             const auto within = [](float v) { return std::abs(v) <= 1e7f; };
             if (!(within(p.position.x) && within(p.position.y) && within(p.position.z) &&
-                  p.radius > 0 && p.radius <= 1e7f && p.optical_depth >= 0 &&
+                  p.radius >= 1e-6f && p.radius <= 1e7f && p.optical_depth >= 0 &&
                   p.optical_depth <= 1e4f && p.albedo >= 0 && p.albedo <= 1)) {
                 return fail(error_code::bad_input,
                             std::string("Particle ") + std::to_string(i) +
-                                " can't be traced: within 1e7 m, a positive radius, a depth of 0 "
-                                "to 1e4 and an albedo of 0 to 1 are wanted.");
+                                " can't be traced: within 1e7 m, a radius of 1e-6 to 1e7 m, a "
+                                "depth of 0 to 1e4 and an albedo of 0 to 1 are wanted.");
             }
             const double sigma = double{p.radius} / sigmas;
             out.blobs_.push_back({glm::dvec3(p.position), -0.5 / (sigma * sigma),
@@ -157,6 +180,9 @@ class gaussian_medium {
                                   double{p.albedo}, cut * cut * sigma * sigma, sigma});
         }
         out.bin(cut);
+        if (auto done = detail::check_steps(out.cells_); !done) {
+            return failure(done.error());
+        }
         return out;
     }
 
@@ -222,6 +248,7 @@ class gaussian_medium {
             high = glm::max(high, b.centre + cut * b.sigma);
             mean_sigma += b.sigma / double(blobs_.size());
         }
+        high = glm::max(high, low + 1e-6); // far away rounding may leave nothing of a particle
         cells_.low = low;
         for (int a = 0; a < 3; ++a) {
             cells_.count[a] =
@@ -290,8 +317,8 @@ class gaussian_medium {
 class voxel_medium {
   public:
     /// `extinction`: 1/m, x fastest, then y; `low`: the corner of the box; `side`: of a voxel, m.
-    /// Errors: bad_input where the sizes disagree, a value is negative or no number, a side isn't
-    /// positive or the albedo is outside of 0…1.
+    /// Errors: bad_input where the sizes disagree, a value is negative or no number, a side is
+    /// below 1e-6 m or the albedo is outside of 0…1, or a voxel's depth is above 1e6 / √3.
     [[nodiscard]] static result<voxel_medium> create(std::span<const float> extinction,
                                                      const glm::uvec3& voxels,
                                                      const glm::dvec3& low, const glm::dvec3& side,
@@ -306,11 +333,13 @@ class voxel_medium {
                             " voxels with " + std::to_string(extinction.size()) +
                             " values can't be traced.");
         }
-        if (!(side.x > 0 && side.y > 0 && side.z > 0 && side.x < 1e7 && side.y < 1e7 &&
-              side.z < 1e7 && glm::dot(low, low) < 1e14 && albedo >= 0 && albedo <= 1)) {
+        constexpr double finest = 1e-6;
+        if (!(side.x >= finest && side.y >= finest && side.z >= finest && side.x < 1e7 &&
+              side.y < 1e7 && side.z < 1e7 && glm::dot(low, low) < 1e14 && albedo >= 0 &&
+              albedo <= 1)) {
             return fail(error_code::bad_input,
-                        "A grid to trace needs positive sides of voxels, a corner within 1e7 m and "
-                        "an albedo of 0 to 1.");
+                        "A grid to trace needs voxels with sides from 1e-6 to 1e7 m, a corner "
+                        "within 1e7 m and an albedo of 0 to 1.");
         }
         for (std::size_t i = 0; i < extinction.size(); ++i) {
             if (!(extinction[i] >= 0 && extinction[i] < 1e10f)) {
@@ -323,6 +352,9 @@ class voxel_medium {
         out.albedo_ = albedo;
         out.extinction_.assign(extinction.begin(), extinction.end());
         out.bound(low, side);
+        if (auto done = detail::check_steps(out.cells_); !done) {
+            return failure(done.error());
+        }
         return out;
     }
 

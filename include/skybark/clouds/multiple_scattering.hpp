@@ -76,7 +76,8 @@ struct multiple_scattering_options {
     /// The attenuation in the volume over the optical depth: 1 for attenuation_light::extinction,
     /// 1 − ωf (`share_of(medium)`) for the continuum's.
     float share = 1;
-    std::uint32_t halvings = 1; ///< the fluence has 2^-halvings of the volume's resolution
+    std::uint32_t halvings = 1; ///< the fluence has 2^-halvings of the volume's resolution: 1…4,
+                                ///< and no more than leave a cell
     std::uint32_t cycles = 3;   ///< V-cycles on the finest grid, 1…64
     float spreading = 1.25f;    ///< factor of the limiter; 0: plain δ-Eddington, with …
     float emptiness = 2;        ///< … 0 here: the resistance of empty space times W
@@ -104,6 +105,15 @@ class multiple_scattering {
             return failure(done.error());
         }
         multiple_scattering made(voxels, options);
+        if (made.finest() >= made.levels_.size()) {
+            return fail(error_code::bad_input,
+                        std::string("Multiple scattering over a volume of ") +
+                            std::to_string(voxels.x) + " x " + std::to_string(voxels.y) + " x " +
+                            std::to_string(voxels.z) + " voxels cannot have " +
+                            std::to_string(options.halvings) +
+                            " halvings; expected up to the one that leaves a single cell, " +
+                            std::to_string(made.levels_.size()) + ".");
+        }
         if (made.bytes() > options.most_bytes) {
             return fail(error_code::bad_input,
                         std::string("Multiple scattering over a volume of ") +

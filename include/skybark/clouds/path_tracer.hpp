@@ -203,7 +203,28 @@ void in_rounds(std::uint64_t jobs, std::uint32_t threads, Work&& work, Done&& do
     }
 }
 
-[[nodiscard]] inline result<std::uint64_t> paths_per_batch(const path_options& options) {
+/// What phase_function asserts: no cosine could be drawn from another.
+[[nodiscard]] inline result<void> check_phase(const phase_function& phase) {
+    const auto is_cosine = [](double g) { return g > -1 && g < 1; };
+    if (is_cosine(phase.g_henyey_greenstein()) && is_cosine(phase.g_draine()) &&
+        phase.alpha() >= 0 && phase.alpha() <= 1e300 && phase.weight() >= 0 &&
+        phase.weight() <= 1) {
+        return {};
+    }
+    return fail(error_code::bad_input,
+                std::string("A phase function of g ") +
+                    std::to_string(phase.g_henyey_greenstein()) + ", Draine's g " +
+                    std::to_string(phase.g_draine()) + ", alpha " + std::to_string(phase.alpha()) +
+                    " and weight " + std::to_string(phase.weight()) +
+                    " can't be traced: above -1 to below 1 for both g, from 0 for alpha and 0 to 1 "
+                    "for the weight are wanted.");
+}
+
+[[nodiscard]] inline result<std::uint64_t> paths_per_batch(const path_options& options,
+                                                           const phase_function& phase) {
+    if (auto done = check_phase(phase); !done) {
+        return failure(done.error());
+    }
     if (!(options.batches >= 2 && options.batches <= 4096 && options.paths > 0 &&
           options.paths <= (std::uint64_t{1} << 48))) {
         return fail(
@@ -384,7 +405,7 @@ template <medium M>
 [[nodiscard]] inline result<slab_light> trace_slab(double depth, double albedo,
                                                    const phase_function& phase, double cosine = 1,
                                                    const path_options& options = {}) {
-    const auto per_batch = detail::paths_per_batch(options);
+    const auto per_batch = detail::paths_per_batch(options, phase);
     if (!per_batch) {
         return failure(per_batch.error());
     }
@@ -431,7 +452,7 @@ template <medium M>
 [[nodiscard]] result<fluence_field>
 trace_fluence(const M& in, const phase_function& phase, const glm::dvec3& to_sun,
               const light_grid& grid, const glm::uvec3& voxels, const path_options& options = {}) {
-    const auto per_batch = detail::paths_per_batch(options);
+    const auto per_batch = detail::paths_per_batch(options, phase);
     if (!per_batch) {
         return failure(per_batch.error());
     }
@@ -511,7 +532,8 @@ template <medium M>
 
 /// The radiance that arrives along each ray, over the sun's irradiance: scattered sunlight and a
 /// sky of radiance `sky` everywhere; the sun itself isn't seen. `options.paths` are for each ray;
-/// the standard error is that of their mean. Errors: bad_input where a vector isn't of unit length.
+/// the standard error is that of their mean. Errors: bad_input where a vector isn't of unit length,
+/// or the sky is no radiance.
 template <medium M>
 [[nodiscard]] result<std::vector<estimate>>
 trace_radiance(const M& in, const phase_function& phase, const glm::dvec3& to_sun,
@@ -523,6 +545,13 @@ trace_radiance(const M& in, const phase_function& phase, const glm::dvec3& to_su
         })) {
         return fail(error_code::bad_input, "To trace rays takes unit vectors, origins within 1e7 m "
                                            "and 2 to 2^32 paths a ray.");
+    }
+    if (!(sky >= 0 && sky <= 1e300)) {
+        return fail(error_code::bad_input, std::string("A sky of radiance ") + std::to_string(sky) +
+                                               " can't be traced; from 0 on is wanted.");
+    }
+    if (auto done = detail::check_phase(phase); !done) {
+        return failure(done.error());
     }
     std::vector<estimate> out(rays.size());
     if (rays.empty()) {
