@@ -15,7 +15,7 @@
 namespace skybark::io {
 
 /// The most voxels that a density may have within the box of its active ones.
-inline constexpr std::uint64_t most_voxels = std::uint64_t{1} << 31u;
+inline constexpr std::uint64_t most_voxels = std::uint64_t{1} << 30u;
 
 /// Reads a density: the grid of floats that is called "density" or, where none is, the first one
 /// that is no level set. The box is that of the active voxels; others in it are 0. Places are as
@@ -27,9 +27,10 @@ inline constexpr std::uint64_t most_voxels = std::uint64_t{1} << 31u;
 /// The file is read in a process of its own, which it may bring down, since the library trusts its
 /// input; this one only waits.
 ///
-/// Errors: it can't be opened, is empty, is no VDB file, is cut off or damaged; there is no such
-/// grid, or no active voxel in it; a transform as above; more than `most_voxels`, said before they
-/// are asked for; a value that is not finite or is negative, with its index; memory.
+/// Errors: it can't be opened, is no plain file, is empty, is no VDB file, is cut off or damaged;
+/// there is no such grid, or no active voxel in it; a transform as above; more than `most_voxels`,
+/// said before they are asked for; a box more than 1e6 times its sides away from the origin; a
+/// value that is not finite or is negative, with its index; memory.
 [[nodiscard]] result<density_grid> read_vdb(const std::string& path);
 
 /// A volume on its way to a file.

@@ -134,8 +134,23 @@ openvdb::CoordBBox box_of(const openvdb::FloatGrid& grid) {
         throw complaint{"has active voxels in a box of " + std::to_string(sides[0]) + " x " +
                         std::to_string(sides[1]) + " x " + std::to_string(sides[2]) +
                         "; expected at most " + std::to_string(most_voxels) +
-                        " in all, which are 8 GiB."};
+                        " in all, which are 4 GiB."};
     return box;
+}
+
+/// Whether floats tell the box's places apart.
+void check_distance(const placed& at, const openvdb::CoordBBox& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+        constexpr double most = 1e6;
+        const auto a = static_cast<std::size_t>(axis);
+        const double low = at.scale[axis] * (box.min()[a] - 0.5) + at.shift[axis];
+        const double side = at.scale[axis] * box.dim()[a];
+        const double farthest = std::max(std::abs(low), std::abs(low + side));
+        if (!(farthest <= most * side))
+            throw complaint{"has active voxels in a box that is " + number_text(side) +
+                            " m long and reaches " + number_text(farthest) +
+                            " m from the origin; expected it within 1e6 times its sides."};
+    }
 }
 
 float checked(float value, const openvdb::Coord& at) {
@@ -239,6 +254,7 @@ void send_density(const std::string& path, byte_sink& to) {
     }
     const placed at = placement_of(*grid);
     const openvdb::CoordBBox box = box_of(*grid);
+    check_distance(at, box);
     dense_layers layers(*grid, box);
     grid_header header;
     for (int axis = 0; axis < 3; ++axis) {
@@ -257,6 +273,13 @@ void send_density(const std::string& path, byte_sink& to) {
 /// Whether it begins as VDB files do; the others needn't bother a child.
 result<void> check_magic(const std::string& path) {
     constexpr std::string_view magic(" BDV\0\0\0\0", 8);
+    std::error_code ignored;
+    const std::filesystem::file_status kind = std::filesystem::status(path, ignored);
+    const bool plain = std::filesystem::is_regular_file(kind);
+    if (std::filesystem::exists(kind) && !plain && !std::filesystem::is_directory(kind))
+        return fail(error_code::bad_input,
+                    in_quotes(path) + " is a pipe or a device; expected a file, which is read "
+                                      "twice.");
     const auto start = load_start(path, magic.size());
     if (!start)
         return failure(start.error());

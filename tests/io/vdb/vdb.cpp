@@ -14,6 +14,7 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <random>
+#include <sys/stat.h>
 #include <tbb/global_control.h>
 
 using namespace skybark;
@@ -279,8 +280,39 @@ TEST_F(vdb, counts_voxels_before_it_asks_for_memory) {
         save(file.path, {grid});
         const std::string side = std::to_string(2 * std::int64_t{far} + 1);
         EXPECT_TRUE(has(complaint(file.path), "in a box of " + side + " x " + side + " x " + side +
-                                                  "; expected at most 2147483648"));
+                                                  "; expected at most 1073741824"));
     }
+    // A line of 2^31, whose number of layers and rows no int has.
+    const auto line = fog("density");
+    line->tree().setValue({-(1 << 30), 0, 0}, 1.0f);
+    line->tree().setValue({(1 << 30) - 1, 0, 0}, 1.0f);
+    save(file.path, {line});
+    EXPECT_TRUE(has(complaint(file.path), "in a box of 2147483648 x 1 x 1; expected at most"));
+}
+
+TEST_F(vdb, refuses_places_that_floats_cannot_tell_apart) {
+    const temporary_path file("far.vdb");
+    const auto saved_at = [&](double side, double x) {
+        const auto grid = fog("density");
+        grid->tree().setValue({0, 0, 0}, 1.0f);
+        grid->tree().setValue({3, 3, 3}, 1.0f);
+        auto placed = openvdb::math::Transform::createLinearTransform(side);
+        placed->postTranslate(openvdb::Vec3d(x, 0, 0));
+        grid->setTransform(placed);
+        save(file.path, {grid});
+        return complaint(file.path);
+    };
+    EXPECT_TRUE(has(saved_at(1e-3, 1e9), "0.004 m long and reaches 1e+09 m"));
+    EXPECT_TRUE(has(saved_at(1, -1e7), "within 1e6 times its sides"));
+    EXPECT_EQ(saved_at(100, 1e8), "");
+}
+
+// A child would wait for a second writer, for ever.
+TEST_F(vdb, reads_no_pipes) {
+    const temporary_path file("pipe.vdb");
+    ASSERT_EQ(::mkfifo(file.path.c_str(), 0600), 0);
+    EXPECT_TRUE(has(complaint(file.path), "is a pipe or a device"));
+    EXPECT_TRUE(has(complaint("/dev/null"), "is a pipe or a device"));
 }
 
 TEST_F(vdb, refuses_what_is_no_file_of_its_kind) {
