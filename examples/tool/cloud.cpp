@@ -12,6 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <skybark/clouds/cumulus.hpp>
 
+#include <algorithm>
+#include <glm/common.hpp>
 #include <limits>
 
 namespace skybark::tool {
@@ -157,6 +159,24 @@ result<void> read_particles(cloud_job& job) {
     return {};
 }
 
+/// Places in a picture are floats: from too far away, a cloud would be drawn as something else.
+result<void> check_drawable(const cloud_job& job) {
+    constexpr float most = 1e6f;
+    const glm::vec3 far = glm::max(glm::abs(job.low), glm::abs(job.high));
+    const glm::vec3 sides = job.high - job.low;
+    const float farthest = std::max({far.x, far.y, far.z});
+    const float size = std::max({sides.x, sides.y, sides.z});
+    if (farthest <= most * size) {
+        return {};
+    }
+    char numbers[96];
+    std::snprintf(numbers, sizeof numbers, "a cloud of %.6g m that reaches %.6g m", double{size},
+                  double{farthest});
+    return fail(error_code::bad_input, io::in_quotes(job.input) + " has " + numbers +
+                                           " from the origin, where a picture can't show it; "
+                                           "expected it within 1e6 times its size.");
+}
+
 /// From voxel coordinates to the world: the inverse of `cells = offset + rows · (p − anchor)`. The
 /// rows are at right angles, each as long as one over the side of a voxel.
 glm::dmat4 world_of(const light_grid& grid) {
@@ -184,6 +204,9 @@ result<void> read_cloud(cloud_job& job) {
             return failure(points.error());
         }
         job.points = std::move(*points);
+    }
+    if (done && job.options.output == cloud_output::picture) {
+        done = check_drawable(job);
     }
     return done;
 }

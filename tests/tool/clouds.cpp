@@ -466,6 +466,27 @@ TEST_F(tool_clouds, says_what_is_wrong_with_particles) {
     expect_failed({"cloud", in_folder("folder.csv"), "-o", in_folder("a.png")}, {"directory"});
 }
 
+TEST_F(tool_clouds, draws_no_cloud_where_floats_cannot_tell_its_places) {
+    const auto with_particle = [&](const std::string& row, const std::string& out) {
+        write_file(in_folder("far.csv"), header + row + "\n");
+        return words{"cloud", in_folder("far.csv"), "--volume", "8", "--size", "16x8",
+                     "-o",    in_folder(out),       "--quiet"};
+    };
+    expect_failed(with_particle("1e9,0,0,1,1,1", "a.png"),
+                  {"far.csv", "2 m", "1e+09 m", "within 1e6 times"});
+    EXPECT_EQ(skybark(with_particle("1e5,900,0,1,1,1", "a.png")).code, 0);
+    // Its volume is as good as anywhere, but for voxels that doubles lose sight of.
+    expect_failed(with_particle("1e9,0,0,1e-6,1,1", "a.png"), {"far.csv", "within 1e6 times"});
+    write_file(in_folder("p.csv"), "x,y,z\n1e9,0,0\n");
+    words probe = with_particle("1e9,0,0,1,2,1", "light.csv");
+    probe.insert(probe.end(), {"--probe", in_folder("p.csv")});
+    EXPECT_EQ(skybark(probe).code, 0);
+    write_file(in_folder("far.csv"), header + "1e9,0,0,1e-6,2,1\n");
+    std::filesystem::remove(folder / "light.csv");
+    std::filesystem::remove(folder / "a.png");
+    expect_failed(probe, {"1e-12 of that distance"});
+}
+
 TEST_F(tool_clouds, says_what_is_wrong_with_points) {
     const auto with_points = [&](const std::string& text, const words& parts) {
         write_file(in_folder("p.csv"), text);
