@@ -4,6 +4,7 @@
 #define KERNEL_PARAMETERS uint samples; float exposure;
 #include "../skeletons/parameters.glsl"
 #include "../shared/shading.glsl"
+#include "../shared/dither.glsl"
 
 #ifdef SKYBARK_VERTEX_STAGE
 vec4 kernel_vertex(uint index) {
@@ -21,7 +22,8 @@ bool kernel_fragment(vec2 pixel, bool front) {
             sum += vec3(display(c.r), display(c.g), display(c.b));
         }
     }
-    color_out = vec4(sum / float(samples * samples), 1.0);
+    float shift = ordered_dither(int(pixel.x), int(pixel.y)) * (1.0 / 255.0);
+    color_out = vec4(sum / float(samples * samples) + shift, 1.0);
     return true;
 }
 #endif

@@ -1,7 +1,12 @@
 #pragma once
 // develop: turns a scene-referred image into one for a display, samples × samples texels a pixel.
+//
+// The image for a display has 8 bits a channel. Before they are rounded, values are shifted by less
+// than half a step, by an ordered pattern of 8 × 8 pixels, so that a clear sky has no contours.
+// What is a whole number of steps stays so: black, white.
 
 #include <skybark/kernels/scene.hpp>
+#include <skybark/shared/dither.hpp>
 
 namespace skybark::kernels {
 
@@ -32,7 +37,9 @@ struct develop {
                 sum += glm::vec3(shared::display(c.x), shared::display(c.y), shared::display(c.z));
             }
         }
-        return {glm::vec4(sum / static_cast<float>(side * side), 1.0f), true};
+        const glm::ivec2 at(pixel);
+        const float shift = shared::ordered_dither(at.x, at.y) * (1.0f / 255.0f);
+        return {glm::vec4(sum / static_cast<float>(side * side) + shift, 1.0f), true};
     }
 };
 

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 8b08489d2ecfa21a54448a3b9f8ded7047b41a788e959d19c4d06395d04163cc
+// sha256 789b8e97acdf7b8b387952456c0e2824e739b105a06c33d8a57f45111317aff0
 #pragma once
 
 #include <skybark/kernels/develop.hpp>
@@ -282,6 +282,13 @@ return c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 0.41666667f) - 0.055f;
 float display(float x) {
 return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
 }
+float ordered_dither(int x, int y) {
+uint down = uint(y);
+uint across = uint(x) ^ down;
+uint rank = (across & 1u) << 5u | (down & 1u) << 4u | (across & 2u) << 2u |
+(down & 2u) << 1u | (across & 4u) >> 1u | (down & 4u) >> 2u;
+return (float(rank) + 0.5f) * 0.015625f - 0.5f;
+}
 #ifdef SKYBARK_VERTEX_STAGE
 vec4 kernel_vertex(uint index) {
 varying_out[0] = vec4(0.0);
@@ -298,12 +305,13 @@ vec3 c = texelFetch(kernel_images[0], first + ivec2(x, y), 0).rgb * exposure;
 sum += vec3(display(c.r), display(c.g), display(c.b));
 }
 }
-color_out = vec4(sum / float(samples * samples), 1.0);
+float shift = ordered_dither(int(pixel.x), int(pixel.y)) * (1.0 / 255.0);
+color_out = vec4(sum / float(samples * samples) + shift, 1.0);
 return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 8272};
+)glsl", 8629};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -576,6 +584,13 @@ return c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 0.41666667f) - 0.055f;
 float display(float x) {
 return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
 }
+float ordered_dither(int x, int y) {
+uint down = uint(y);
+uint across = uint(x) ^ down;
+uint rank = (across & 1u) << 5u | (down & 1u) << 4u | (across & 2u) << 2u |
+(down & 2u) << 1u | (across & 4u) >> 1u | (down & 4u) >> 2u;
+return (float(rank) + 0.5f) * 0.015625f - 0.5f;
+}
 #ifdef SKYBARK_VERTEX_STAGE
 vec4 kernel_vertex(uint index) {
 varying_out[0] = vec4(0.0);
@@ -592,7 +607,8 @@ vec3 c = texelFetch(kernel_images[0], first + ivec2(x, y), 0).rgb * exposure;
 sum += vec3(display(c.r), display(c.g), display(c.b));
 }
 }
-color_out = vec4(sum / float(samples * samples), 1.0);
+float shift = ordered_dither(int(pixel.x), int(pixel.y)) * (1.0 / 255.0);
+color_out = vec4(sum / float(samples * samples) + shift, 1.0);
 return true;
 }
 #endif
@@ -601,7 +617,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 8285};
+)glsl", 8642};
 };
 
 } // namespace skybark::opengl

@@ -1,0 +1,14 @@
+// Ordered dithering: what is added to a value before it is rounded to whole steps, so that slow
+// gradients show no contours.
+#include "records.glsl"
+
+// For a pixel, above -1/2 and below 1/2 of a step: in each square of 8 x 8 every multiple of 1/64
+// plus 1/128, as far apart as they can be (Bayer, "An optimum method for two-level rendition of
+// continuous-tone pictures", ICC 1973). A value that is a whole number of steps stays one.
+float ordered_dither(int x, int y) {
+    uint down = uint(y);
+    uint across = uint(x) ^ down;
+    uint rank = (across & 1u) << 5u | (down & 1u) << 4u | (across & 2u) << 2u |
+                (down & 2u) << 1u | (across & 4u) >> 1u | (down & 4u) >> 2u;
+    return (float(rank) + 0.5f) * 0.015625f - 0.5f;
+}
