@@ -815,7 +815,9 @@ class recorder {
             const float lateral = kernel.lateral(i, x, slab.slice, spans...);
             for (int y = std::max(slab.low.y, 0); y < std::min(slab.high.y, size.y); ++y) {
                 const glm::ivec3 at{x, y, slab.slice};
-                to.store(at, to.load_int(at) + kernel.amount(i, lateral, y, spans...));
+                const float row = kernel.row(i, y, spans...);
+                const float above = kernel.row(i, y + 1, spans...);
+                to.store(at, to.load_int(at) + kernel.amount(lateral, row, above));
             }
         }
     }

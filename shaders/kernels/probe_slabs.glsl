@@ -18,6 +18,7 @@ voxel_slab kernel_slab(uint i, uint s) {
 float kernel_lateral(uint i, int x, int z) {
     return float(boxes[i].low.w + per_x * x + per_z * z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-    return (int(lateral) + boxes[i].high.w * y) * factor;
+float kernel_row(uint i, int y) { return float(boxes[i].high.w * y); }
+int kernel_amount(float lateral, float row, float above) {
+    return int(lateral + 2.0 * row - above) * factor;
 }

@@ -20,10 +20,9 @@ float kernel_lateral(uint i, int x, int z) {
     return lateral_of(p, place(p), x, z);
 }
 
-int kernel_amount(uint i, float lateral, int y) {
-    placed at = place(particle_at(i));
-    return quanta(lateral * part_above(profile, y, at.centre.y, at.radius.y, sigmas));
-}
+float kernel_row(uint i, int y) { return part_of(place(particle_at(i)), y); }
+
+int kernel_amount(float lateral, float row, float above) { return quanta(lateral * row); }
 
 #ifdef SKYBARK_EXPAND
 uint kernel_strips() { return slices; }

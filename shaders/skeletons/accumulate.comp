@@ -9,12 +9,25 @@
 // into the second dimension. (llvmpipe ends an invocation's loops after 65,535 turns altogether.)
 //
 // header.x: the first element, y: the number of elements, w: bit 0: elements from the device's
-// length on are left out. The volume of int32 is an image at SKYBARK_SUMS_BINDING.
+// length on are left out; bit 1: a slab's lines of memory are read before they are added to; bits 2
+// to 15: zero. The volume of int32 is an image at SKYBARK_SUMS_BINDING.
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 16) in;
 #include KERNEL
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
+
+// Reads the first and the last voxel of every step-th row, and with them the lines of memory that
+// most slabs lie in. A processor waits for all of these at once, but for atomic additions one by
+// one. Returns 0, which no compiler knows, and so none leaves the reads out.
+int skybark_fetch(ivec2 low, ivec2 high, int slice, int row, int step) {
+    int all = 0;
+    for (int y = low.y + row; y < high.y; y += step) {
+        all |= imageLoad(skybark_sums, ivec3(low.x, y, slice)).x;
+        all |= imageLoad(skybark_sums, ivec3(high.x - 1, y, slice)).x;
+    }
+    return all & int(skybark_header.w & 0xfffcu);
+}
 
 // Every step-th column of a slab, from the one of this number on.
 void skybark_add(uint i, uint s, int column, int step, ivec3 size) {
@@ -24,13 +37,20 @@ void skybark_add(uint i, uint s, int column, int step, ivec3 size) {
     }
     ivec2 low = clamp(slab.low, ivec2(0), size.xy);
     ivec2 high = min(slab.high, size.xy);
-    for (int x = low.x + column; x < high.x; x += step) {
+    int first = low.x + column;
+    if ((skybark_header.w & 2u) != 0u && low.x < high.x && high.y - low.y > 1) {
+        first += skybark_fetch(low, high, slab.slice, column, step);
+    }
+    for (int x = first; x < high.x; x += step) {
         float lateral = kernel_lateral(i, x, slab.slice);
+        float row = kernel_row(i, low.y);
         for (int y = low.y; y < high.y; ++y) {
-            int amount = kernel_amount(i, lateral, y);
+            float above = kernel_row(i, y + 1);
+            int amount = kernel_amount(lateral, row, above);
             if (amount != 0) { // an atomic addition is dear
                 imageAtomicAdd(skybark_sums, ivec3(x, y, slab.slice), amount);
             }
+            row = above;
         }
     }
 }

@@ -10,7 +10,8 @@ void main() {
     int slice = skybark_cell.y;
     ivec2 at = ivec2(gl_FragCoord.xy) - skybark_origin(slice - skybark_layers.z);
     uint i = uint(skybark_cell.x);
-    int amount = kernel_amount(i, kernel_lateral(i, at.x, slice), at.y);
+    int amount = kernel_amount(kernel_lateral(i, at.x, slice), kernel_row(i, at.y),
+                               kernel_row(i, at.y + 1));
     int low = amount & 255;
     int carry = low >> 7;
     skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));

@@ -11,7 +11,8 @@ struct fractions { // amounts are whole numbers: floats would depend on the orde
     float lateral(std::uint32_t, std::int32_t, std::int32_t, std::span<const float>) const {
         return 0;
     }
-    float amount(std::uint32_t, float, std::int32_t, std::span<const float>) const { return 0.5f; }
+    float row(std::uint32_t, std::int32_t, std::span<const float>) const { return 0; }
+    float amount(float, float, float) const { return 0.5f; }
 };
 
 template <skybark::slab_kernel K>

@@ -42,6 +42,7 @@ enum class fault {
     uploads_late,
     loses_last_slab,
     widens_slabs,
+    takes_a_row_for_the_one_above,
     sums_in_16_bits,
     sums_in_floats,
     ignores_clear_of_sums,
@@ -210,6 +211,14 @@ struct wider_slabs : K {
         voxel_slab slab = K::slab(i, s, spans...);
         slab.high.x += slab.high.x > slab.low.x ? 1 : 0;
         return slab;
+    }
+};
+
+/// A kernel whose amounts take a row for the one above it as well.
+template <class K>
+struct level_slabs : K {
+    [[nodiscard]] std::int32_t amount(float lateral, float row, float) const {
+        return K::amount(lateral, row, row);
     }
 };
 
@@ -439,6 +448,8 @@ class mutant_recorder {
                 inner_.accumulate(fewer_slabs<K>{kernel}, views, which, into);
             } else if (which_ == fault::widens_slabs) {
                 inner_.accumulate(wider_slabs<K>{kernel}, views, which, into);
+            } else if (which_ == fault::takes_a_row_for_the_one_above) {
+                inner_.accumulate(level_slabs<K>{kernel}, views, which, into);
             } else {
                 inner_.accumulate(kernel, views, which, into);
             }
@@ -947,6 +958,9 @@ const mutation all_mutations[] = {
     {fault::widens_slabs,
      "widens_slabs",
      {"accumulate.direct_compact_limit_plus_1", "accumulate.tiles_drawn_compact_outside"}},
+    {fault::takes_a_row_for_the_one_above,
+     "takes_a_row_for_the_one_above",
+     {"accumulate.direct_compact_one", "accumulate.layers_degenerate_limit_plus_1"}},
     {fault::sums_in_16_bits,
      "sums_in_16_bits",
      {"accumulate.direct_compact_large_sums", "accumulate.tiles_copied_compact_large_sums"}},

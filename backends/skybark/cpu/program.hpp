@@ -64,13 +64,16 @@ struct plain_program {
             for (int i = 0; i < columns; ++i) {
                 lateral[i] = kernel.lateral(element, x + i, s.slice, spans...);
             }
+            float row = low < high ? kernel.row(element, low, spans...) : 0.0f;
             for (int y = low; y < high; ++y) {
-                const std::uint64_t row =
+                const float above = kernel.row(element, y + 1, spans...);
+                const std::uint64_t first =
                     static_cast<std::uint64_t>(y) * to.stride + static_cast<std::uint64_t>(x);
                 for (int i = 0; i < columns; ++i) {
-                    to.add(row + static_cast<std::uint64_t>(i),
-                           kernel.amount(element, lateral[i], y, spans...));
+                    to.add(first + static_cast<std::uint64_t>(i),
+                           kernel.amount(lateral[i], row, above));
                 }
+                row = above;
             }
         }
     }

@@ -52,7 +52,7 @@ struct shader_stage {
     std::string_view text;
 };
 
-/// What drawn accumulations draw into: floats, two to a voxel. Kept until another size is needed.
+/// What drawn accumulations draw into: floats, two to a voxel. Kept until a larger size is needed.
 struct sum_targets {
     gl::handle tiles = 0;  ///< a 2-D texture, all layers side by side
     gl::handle layers = 0; ///< a 3-D texture
@@ -62,6 +62,11 @@ struct sum_targets {
     gl::handle layers_frame = 0; ///< of all layers of `layers` at once
     gl::handle layer_frame = 0;  ///< of one of them
 };
+
+/// Of a texture of two floats a pixel or voxel.
+[[nodiscard]] constexpr std::uint64_t sum_bytes(const glm::uvec3& size) {
+    return std::uint64_t{8} * size.x * size.y * size.z;
+}
 
 /// What peels draw into. Kept until another size is needed.
 struct layer_target {
@@ -181,9 +186,11 @@ class context {
     }
     void say_made(const char* what, std::uint64_t bytes) const;
 
-    /// Makes `objects.sums.tiles`, or `layers`, exactly so large.
-    [[nodiscard]] result<void> size_tiles(const glm::uvec2& size);
-    [[nodiscard]] result<void> size_layers(const glm::uvec3& size);
+    /// Makes `objects.sums.tiles`, or `layers`, at least so large along each side: both keep what
+    /// they have had, so that volumes of several sizes take turns without making textures. Where
+    /// that would be more than max_target_bytes, exactly so large.
+    [[nodiscard]] result<void> size_tiles(const glm::uvec2& wanted);
+    [[nodiscard]] result<void> size_layers(const glm::uvec3& wanted);
 
     /// Makes the textures of `objects.resolve` show its buffers.
     void show_resolve_buffers();
@@ -204,6 +211,7 @@ class context {
     device_usage usage;
     shared_objects objects;
     std::string renderer;
+    bool on_cpu = false;            ///< the renderer is Mesa's in software, or on top of it
     bool watched = false;           ///< patterns have zones or groups
     const char* current = "device"; ///< the one that is recorded: programs are named by it
 
@@ -355,6 +363,8 @@ inline result<void> context::require_limits() {
     const auto* version = reinterpret_cast<const char*>(gl.get_string(gl::version));
     renderer = std::string(name == nullptr ? "?" : name) + ", OpenGL " +
                (version == nullptr ? "?" : version);
+    on_cpu = renderer.find("llvmpipe") != std::string::npos ||
+             renderer.find("softpipe") != std::string::npos;
     return {};
 }
 
@@ -676,11 +686,13 @@ inline result<bound_range> context::write_ranges(std::span<const range> ranges) 
     return bound_range{objects.ranges.name, 0, size};
 }
 
-inline result<void> context::size_tiles(const glm::uvec2& size) {
+inline result<void> context::size_tiles(const glm::uvec2& wanted) {
     sum_targets& sums = objects.sums;
-    if (sums.tiles_size == size) {
+    const glm::uvec2 with_old = glm::max(wanted, sums.tiles_size);
+    if (with_old == sums.tiles_size) {
         return {};
     }
+    const glm::uvec2 size = sum_bytes({with_old, 1}) <= max_target_bytes ? with_old : wanted;
     gl.delete_textures(1, &sums.tiles);
     gl.create_textures(gl::texture_2d, 1, &sums.tiles);
     label(gl::object_texture, sums.tiles, "tiles to accumulate in");
@@ -691,16 +703,18 @@ inline result<void> context::size_tiles(const glm::uvec2& size) {
                       " pixels to accumulate in");
     sums.tiles_size = done ? size : glm::uvec2(0);
     if (done) {
-        say_made("texture to accumulate in", std::uint64_t{size.x} * size.y * 8);
+        say_made("texture to accumulate in", sum_bytes({size, 1}));
     }
     return done;
 }
 
-inline result<void> context::size_layers(const glm::uvec3& size) {
+inline result<void> context::size_layers(const glm::uvec3& wanted) {
     sum_targets& sums = objects.sums;
-    if (sums.layers_size == size) {
+    const glm::uvec3 with_old = glm::max(wanted, sums.layers_size);
+    if (with_old == sums.layers_size) {
         return {};
     }
+    const glm::uvec3 size = sum_bytes(with_old) <= max_target_bytes ? with_old : wanted;
     gl.delete_textures(1, &sums.layers);
     gl.create_textures(gl::texture_3d, 1, &sums.layers);
     label(gl::object_texture, sums.layers, "layers to accumulate in");
@@ -712,7 +726,7 @@ inline result<void> context::size_layers(const glm::uvec3& size) {
               " x " + std::to_string(size.z) + " voxels to accumulate in");
     sums.layers_size = done ? size : glm::uvec3(0);
     if (done) {
-        say_made("texture to accumulate in", std::uint64_t{size.x} * size.y * size.z * 8);
+        say_made("texture to accumulate in", sum_bytes(size));
     }
     return done;
 }

@@ -32,6 +32,9 @@ inline void bind_volume(context& c, std::uint32_t unit, const bound_volume& volu
 
 // ---- accumulate ---------------------------------------------------------------------------------
 
+/// Of an accumulation's header: a slab's memory is read before it is added to.
+inline constexpr std::uint32_t fetch_first = 2;
+
 /// An accumulation without types.
 struct slab_call {
     std::string_view compute_text;
@@ -52,22 +55,26 @@ inline void clear_volume(context& c, const bound_volume& volume) {
 
 /// How an accumulation falls on groups of invocations: see accumulate.comp.
 struct slab_plan {
-    std::uint32_t lanes = 8;   ///< columns side by side
+    std::uint32_t lanes = 16;  ///< columns side by side
     std::uint32_t sharing = 1; ///< groups that share a slab
     std::uint32_t each = 0;    ///< slabs a group
+    std::uint32_t flags = 0;
 };
 
-/// As few groups an element as can walk slabs as large as the volume, because Mesa's software
-/// rasterisers end an invocation's loops after 65,535 rounds.
-[[nodiscard]] inline slab_plan plan_slabs(std::uint32_t slabs, const volume_description& size) {
+/// Into as few groups an element as can walk slabs as large as the volume, where loops end after
+/// so many rounds.
+[[nodiscard]] inline slab_plan plan_slabs(std::uint32_t slabs, const volume_description& size,
+                                          bool on_cpu) {
     slab_plan plan;
+    plan.lanes = on_cpu ? 4 : 16;
     plan.each = std::min(slabs, 65535u);
+    plan.flags = on_cpu ? fetch_first : 0;
     const auto rounds = [&] {
         const std::uint64_t columns = (size.width - 1) / (plan.lanes * plan.sharing) + 1;
         const std::uint64_t turns = (plan.each - 1) / (16 / plan.lanes) + 1;
-        return turns * (1 + columns * (std::uint64_t{size.height} + 1));
+        return turns * (1 + (columns + 1) * (std::uint64_t{size.height} + 1));
     };
-    while (rounds() > max_rounds) {
+    while (on_cpu && rounds() > max_rounds) {
         plan.each = (plan.each + 1) / 2;
         plan.sharing *= plan.each == 1 ? 2 : 1;
     }
@@ -89,7 +96,7 @@ struct slab_plan {
     if (elements.count == 0 || out.slabs == 0) {
         return {};
     }
-    const slab_plan plan = plan_slabs(out.slabs, out.into.size);
+    const slab_plan plan = plan_slabs(out.slabs, out.into.size, c.on_cpu);
     const std::uint32_t parts = ((out.slabs - 1) / plan.each + 1) * plan.sharing;
     const std::uint64_t each = std::uint64_t{64} * parts; // a group of its own, as arguments count
     // The number of an invocation has 32 bits.
@@ -119,7 +126,7 @@ struct slab_plan {
         }
         bind_parameters(c,
                         {elements.first + done, now, plan.lanes | plan.sharing << 16,
-                         plan.each << 16 | (counted ? 1u : 0u)},
+                         plan.each << 16 | plan.flags | (counted ? 1u : 0u)},
                         call.parameters);
         if (counted) {
             dispatch_indirect(c, *program);

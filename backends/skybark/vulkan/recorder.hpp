@@ -83,11 +83,15 @@ struct slab_call {
     std::uint32_t slabs = 0;
 };
 
+/// Of an accumulation's header: a slab's memory is read before it is added to.
+inline constexpr std::uint32_t flag_fetch = 2;
+
 /// How an accumulation falls on invocations: see accumulate.comp.
 struct slab_plan {
     std::uint32_t lanes = 0;   ///< columns side by side
     std::uint32_t sharing = 1; ///< groups that share a slab
     std::uint32_t each = 0;    ///< slabs a group
+    std::uint32_t flags = 0;
 };
 
 /// Where pairs to sort are, or go.
@@ -517,12 +521,14 @@ class recorder : private detail::stream {
     [[nodiscard]] detail::slab_plan plan_slabs(std::uint32_t slabs,
                                                const volume_description& size) const {
         detail::slab_plan p;
-        p.lanes = state_->shared.per_vertices() ? 16 : 4;
+        const bool side_by_side = state_->shared.per_vertices();
+        p.lanes = side_by_side ? 16 : 4;
         p.each = std::min(slabs, 65535u);
+        p.flags = side_by_side ? 0 : detail::flag_fetch;
         const auto turns = [&] {
             const std::uint64_t columns = groups_of(size.width, p.lanes * p.sharing);
             return groups_of(p.each, 16 / p.lanes) *
-                   (1 + columns * (std::uint64_t{size.height} + 1));
+                   (1 + (columns + 1) * (std::uint64_t{size.height} + 1));
         };
         while (state_->shared.on_cpu() && turns() > most_loop_turns) {
             p.each = (p.each + 1) / 2;
@@ -551,8 +557,9 @@ class recorder : private detail::stream {
             indirect ? arguments_for(what.length, count, 1, 64 * parts) : slice{};
         for (std::uint32_t first = 0; first < count;) {
             const std::uint32_t n = std::min(count - first, most);
-            what.pass.push.set_header({what.elements.first + first, n, p.lanes | p.sharing << 16,
-                                       p.each << 16 | (counted ? detail::flag_counted : 0)});
+            what.pass.push.set_header(
+                {what.elements.first + first, n, p.lanes | p.sharing << 16,
+                 p.each << 16 | p.flags | (counted ? detail::flag_counted : 0)});
             if (indirect) {
                 dispatch_indirect(what.pass, arguments);
             } else {

@@ -26,9 +26,10 @@
 //   accumulate  Every element adds to up to `slabs()` rectangles of voxels, each in one layer of
 //               constant z. `slab_count(i, spans…)` is how many it really has; `slab(i, s, spans…)`
 //               is the s-th of them, and may reach beyond the volume. To the voxel (x, y, z) of it
-//               goes `amount(i, lateral(i, x, z, spans…), y, spans…)`, an int32: what depends on x
-//               and z alone is made once for a column. Where an element is drawn, the slabs that it
-//               does not have are degenerate.
+//               goes the int32 `amount(lateral, row, above)`, which nothing else goes into: the
+//               floats `lateral(i, x, z, spans…)`, made once for a column, `row(i, y, spans…)`, and
+//               above = row(i, y + 1, spans…), also at a slab's last row. Where an element is
+//               drawn, the slabs that it does not have are degenerate.
 //   map,        A kernel that names `volumes` (≤ 4, read) and `volume_targets` (≤ 4, written) is
 //   map_voxels  given them before its spans: `map(i, grids, spans…)`. With `map_voxels`,
 //               `voxel(ivec3 at, grids, spans…)` runs once for every voxel of an extent.
@@ -158,13 +159,14 @@ concept has_ring_functions = requires(const K& k, std::uint32_t i, typename Slot
     k.ring(i, i, i, sink, spans...);
 };
 template <class K, class... Slots>
-concept has_slab_functions = requires(const K& k, std::uint32_t i, std::int32_t at, float lateral,
+concept has_slab_functions = requires(const K& k, std::uint32_t i, std::int32_t at, float known,
                                       typename Slots::span... spans) {
     { k.slabs() } -> std::same_as<std::uint32_t>;
     { k.slab_count(i, spans...) } -> std::same_as<std::uint32_t>;
     { k.slab(i, i, spans...) } -> std::same_as<voxel_slab>;
     { k.lateral(i, at, at, spans...) } -> std::same_as<float>;
-    { k.amount(i, lateral, at, spans...) } -> std::same_as<std::int32_t>;
+    { k.row(i, at, spans...) } -> std::same_as<float>;
+    { k.amount(known, known, known) } -> std::same_as<std::int32_t>;
 };
 template <class K, class... Slots>
 concept has_grid_map_function = requires(const K& k, std::uint32_t i, const any_grids& grids,

@@ -45,15 +45,14 @@ struct particle_impulse {
         return shade.lateral(particles[i], shade.place(particles[i]), x, z);
     }
 
-    [[nodiscard]] std::int32_t amount(std::uint32_t i, float lateral, std::int32_t y,
-                                      std::span<const cloud_particle> particles) const {
-        const particle_shade::placed at = shade.place(particles[i]);
-        return shared::quanta(lateral * part(at, y)) - shared::quanta(lateral * part(at, y + 1));
+    [[nodiscard]] float row(std::uint32_t i, std::int32_t y,
+                            std::span<const cloud_particle> particles) const {
+        return shade.part_above(shade.place(particles[i]), y);
     }
 
-  private:
-    [[nodiscard]] float part(const particle_shade::placed& at, std::int32_t y) const {
-        return shared::part_above(shade.profile, y, at.centre.y, at.radius.y, shade.sigmas);
+    /// Each row's quanta are rounded by themselves, as `shadow_polygon` rounds them.
+    [[nodiscard]] std::int32_t amount(float lateral, float row, float above) const {
+        return shared::quanta(lateral * row) - shared::quanta(lateral * above);
     }
 };
 

@@ -47,6 +47,10 @@ struct particle_shade {
         return shared::particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) /
                grid.voxel.w;
     }
+    /// What part of a particle lies above the middle of row y.
+    [[nodiscard]] float part_above(const placed& p, std::int32_t y) const {
+        return shared::part_above(profile, y, p.centre.y, p.radius.y, sigmas);
+    }
 };
 static_assert(sizeof(particle_shade) == 112);
 

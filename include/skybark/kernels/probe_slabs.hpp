@@ -11,11 +11,11 @@ namespace skybark::kernels {
 /// each is smaller than the one before it, and the last ones may be empty.
 struct probe_box {
     glm::ivec4 low{0};  ///< xyz: the first voxel; w: what every voxel of it gets
-    glm::ivec4 high{0}; ///< xyz: one past the last voxel; w: what a voxel gets besides for each y
+    glm::ivec4 high{0}; ///< xyz: one past the last voxel; w: what a voxel gets for each y − 1
 };
 static_assert(sizeof(probe_box) == 32);
 
-/// Buffers: boxes. The amounts are whole numbers, and so is what is made for a column.
+/// Buffers: boxes. The amounts are whole numbers, and so is what is made for columns and rows.
 struct probe_slabs {
     using buffers = buffer_list<readonly<probe_box>>;
 
@@ -41,9 +41,14 @@ struct probe_slabs {
                                 std::span<const probe_box> boxes) const {
         return static_cast<float>(boxes[i].low.w + per_x * x + per_z * z);
     }
-    [[nodiscard]] std::int32_t amount(std::uint32_t i, float lateral, std::int32_t y,
-                                      std::span<const probe_box> boxes) const {
-        return (static_cast<std::int32_t>(lateral) + boxes[i].high.w * y) * factor;
+    /// The same.
+    [[nodiscard]] float row(std::uint32_t i, std::int32_t y,
+                            std::span<const probe_box> boxes) const {
+        return static_cast<float>(boxes[i].high.w * y);
+    }
+    /// 2 w y − w (y + 1) is w (y − 1): what lies above is told from what lies beside or below.
+    [[nodiscard]] std::int32_t amount(float lateral, float row, float above) const {
+        return static_cast<std::int32_t>(lateral + 2 * row - above) * factor;
     }
 };
 

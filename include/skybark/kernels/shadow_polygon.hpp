@@ -34,12 +34,13 @@ struct shadow_polygon {
         const cloud_particle& p = particles[particle_of(i, corners)];
         return shade.lateral(p, shade.place(p), x, z);
     }
-    [[nodiscard]] std::int32_t amount(std::uint32_t i, float lateral, std::int32_t y,
-                                      std::span<const cloud_particle> particles,
-                                      std::span<const shadow_corner> corners) const {
-        const particle_shade::placed at = shade.place(particles[particle_of(i, corners)]);
-        return shared::quanta(
-            lateral * shared::part_above(shade.profile, y, at.centre.y, at.radius.y, shade.sigmas));
+    [[nodiscard]] float row(std::uint32_t i, std::int32_t y,
+                            std::span<const cloud_particle> particles,
+                            std::span<const shadow_corner> corners) const {
+        return shade.part_above(shade.place(particles[particle_of(i, corners)]), y);
+    }
+    [[nodiscard]] std::int32_t amount(float lateral, float row, float) const {
+        return shared::quanta(lateral * row);
     }
 
   private:

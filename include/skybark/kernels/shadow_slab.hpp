@@ -60,11 +60,12 @@ struct shadow_slab {
                                 std::span<const cloud_particle> particles) const {
         return shade.lateral(particles[i], shade.place(particles[i]), x, z);
     }
-    [[nodiscard]] std::int32_t amount(std::uint32_t i, float lateral, std::int32_t y,
-                                      std::span<const cloud_particle> particles) const {
-        const particle_shade::placed at = shade.place(particles[i]);
-        return shared::quanta(
-            lateral * shared::part_above(shade.profile, y, at.centre.y, at.radius.y, shade.sigmas));
+    [[nodiscard]] float row(std::uint32_t i, std::int32_t y,
+                            std::span<const cloud_particle> particles) const {
+        return shade.part_above(shade.place(particles[i]), y);
+    }
+    [[nodiscard]] std::int32_t amount(float lateral, float row, float) const {
+        return shared::quanta(lateral * row);
     }
 };
 

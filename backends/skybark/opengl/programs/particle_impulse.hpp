@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f5146f459bbc6f7d888168321bead8079077c0e0cb96b48ddc18f0c3f502a164
+// sha256 7febff4f72322ef6cb68798b78f20b657dd64d3cdcebce3132e66c1de38628c2
 #pragma once
 
 #include <skybark/kernels/particle_impulse.hpp>
@@ -300,6 +300,7 @@ float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
 return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
 }
+float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
 uint kernel_slab_count(uint i) { return slice_count(place(particle_at(i))); }
 voxel_slab kernel_slab(uint i, uint s) {
@@ -317,13 +318,20 @@ float kernel_lateral(uint i, int x, int z) {
 cloud_particle p = particle_at(i);
 return lateral_of(p, place(p), x, z);
 }
-float part_of(placed at, int y) { return part_above(profile, y, at.centre.y, at.radius.y, sigmas); }
-int kernel_amount(uint i, float lateral, int y) {
-placed at = place(particle_at(i));
-return quanta(lateral * part_of(at, y)) - quanta(lateral * part_of(at, y + 1));
+float kernel_row(uint i, int y) { return part_of(place(particle_at(i)), y); }
+int kernel_amount(float lateral, float row, float above) {
+return quanta(lateral * row) - quanta(lateral * above);
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
+int skybark_fetch(ivec2 low, ivec2 high, int slice, int row, int step) {
+int all = 0;
+for (int y = low.y + row; y < high.y; y += step) {
+all |= imageLoad(skybark_sums, ivec3(low.x, y, slice)).x;
+all |= imageLoad(skybark_sums, ivec3(high.x - 1, y, slice)).x;
+}
+return all & int(skybark_header.w & 0xfffcu);
+}
 void skybark_add(uint i, uint s, int column, int step, ivec3 size) {
 voxel_slab slab = kernel_slab(i, s);
 if (slab.slice < 0 || slab.slice >= size.z) {
@@ -331,13 +339,20 @@ return;
 }
 ivec2 low = clamp(slab.low, ivec2(0), size.xy);
 ivec2 high = min(slab.high, size.xy);
-for (int x = low.x + column; x < high.x; x += step) {
+int first = low.x + column;
+if ((skybark_header.w & 2u) != 0u && low.x < high.x && high.y - low.y > 1) {
+first += skybark_fetch(low, high, slab.slice, column, step);
+}
+for (int x = first; x < high.x; x += step) {
 float lateral = kernel_lateral(i, x, slab.slice);
+float row = kernel_row(i, low.y);
 for (int y = low.y; y < high.y; ++y) {
-int amount = kernel_amount(i, lateral, y);
+float above = kernel_row(i, y + 1);
+int amount = kernel_amount(lateral, row, above);
 if (amount != 0) {
 imageAtomicAdd(skybark_sums, ivec3(x, y, slab.slice), amount);
 }
+row = above;
 }
 }
 }
@@ -363,7 +378,7 @@ for (uint s = first + slot; s < last; s += 16u / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 10059};
+)glsl", 10640};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -652,6 +667,7 @@ float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
 return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
 }
+float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
 uint kernel_slab_count(uint i) { return slice_count(place(particle_at(i))); }
 voxel_slab kernel_slab(uint i, uint s) {
@@ -669,10 +685,9 @@ float kernel_lateral(uint i, int x, int z) {
 cloud_particle p = particle_at(i);
 return lateral_of(p, place(p), x, z);
 }
-float part_of(placed at, int y) { return part_above(profile, y, at.centre.y, at.radius.y, sigmas); }
-int kernel_amount(uint i, float lateral, int y) {
-placed at = place(particle_at(i));
-return quanta(lateral * part_of(at, y)) - quanta(lateral * part_of(at, y + 1));
+float kernel_row(uint i, int y) { return part_of(place(particle_at(i)), y); }
+int kernel_amount(float lateral, float row, float above) {
+return quanta(lateral * row) - quanta(lateral * above);
 }
 layout(location = 0) uniform ivec4 skybark_layers;
 layout(location = 1) uniform ivec4 skybark_tiles;
@@ -719,7 +734,7 @@ slab = skybark_visible(i, s);
 skybark_cell = ivec2(i, slab.slice);
 gl_Position = skybark_corner(slab, corners[uint(gl_VertexID) - rectangle * 6u]);
 }
-)glsl", 10167};
+)glsl", 10192};
     static constexpr std::string_view slabs_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1008,6 +1023,7 @@ float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
 return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
 }
+float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
 uint kernel_slab_count(uint i) { return slice_count(place(particle_at(i))); }
 voxel_slab kernel_slab(uint i, uint s) {
@@ -1025,10 +1041,9 @@ float kernel_lateral(uint i, int x, int z) {
 cloud_particle p = particle_at(i);
 return lateral_of(p, place(p), x, z);
 }
-float part_of(placed at, int y) { return part_above(profile, y, at.centre.y, at.radius.y, sigmas); }
-int kernel_amount(uint i, float lateral, int y) {
-placed at = place(particle_at(i));
-return quanta(lateral * part_of(at, y)) - quanta(lateral * part_of(at, y + 1));
+float kernel_row(uint i, int y) { return part_of(place(particle_at(i)), y); }
+int kernel_amount(float lateral, float row, float above) {
+return quanta(lateral * row) - quanta(lateral * above);
 }
 layout(location = 0) uniform ivec4 skybark_layers;
 layout(location = 1) uniform ivec4 skybark_tiles;
@@ -1091,7 +1106,7 @@ skybark_emit(i, slab);
 }
 }
 }
-)glsl", 10659};
+)glsl", 10684};
     static constexpr std::string_view slabs_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1380,6 +1395,7 @@ float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
 return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
 }
+float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
 uint kernel_slab_count(uint i) { return slice_count(place(particle_at(i))); }
 voxel_slab kernel_slab(uint i, uint s) {
@@ -1397,10 +1413,9 @@ float kernel_lateral(uint i, int x, int z) {
 cloud_particle p = particle_at(i);
 return lateral_of(p, place(p), x, z);
 }
-float part_of(placed at, int y) { return part_above(profile, y, at.centre.y, at.radius.y, sigmas); }
-int kernel_amount(uint i, float lateral, int y) {
-placed at = place(particle_at(i));
-return quanta(lateral * part_of(at, y)) - quanta(lateral * part_of(at, y + 1));
+float kernel_row(uint i, int y) { return part_of(place(particle_at(i)), y); }
+int kernel_amount(float lateral, float row, float above) {
+return quanta(lateral * row) - quanta(lateral * above);
 }
 layout(location = 0) uniform ivec4 skybark_layers;
 layout(location = 1) uniform ivec4 skybark_tiles;
@@ -1434,12 +1449,13 @@ void main() {
 int slice = skybark_cell.y;
 ivec2 at = ivec2(gl_FragCoord.xy) - skybark_origin(slice - skybark_layers.z);
 uint i = uint(skybark_cell.x);
-int amount = kernel_amount(i, kernel_lateral(i, at.x, slice), at.y);
+int amount = kernel_amount(kernel_lateral(i, at.x, slice), kernel_row(i, at.y),
+kernel_row(i, at.y + 1));
 int low = amount & 255;
 int carry = low >> 7;
 skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));
 }
-)glsl", 9974};
+)glsl", 10036};
 };
 
 } // namespace skybark::opengl

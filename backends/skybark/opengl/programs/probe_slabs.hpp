@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c3eeda12e0bbaeacf24be9f8d2650aa82d2decd206175ca78d7944b496851214
+// sha256 35eb3c3c77f769141f6428c50ec1f24a7cde05fedd704aeaa43b045b65a0b9a9
 #pragma once
 
 #include <skybark/kernels/probe_slabs.hpp>
@@ -76,11 +76,20 @@ box.low.z + by);
 float kernel_lateral(uint i, int x, int z) {
 return float(boxes[i].low.w + per_x * x + per_z * z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-return (int(lateral) + boxes[i].high.w * y) * factor;
+float kernel_row(uint i, int y) { return float(boxes[i].high.w * y); }
+int kernel_amount(float lateral, float row, float above) {
+return int(lateral + 2.0 * row - above) * factor;
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
+int skybark_fetch(ivec2 low, ivec2 high, int slice, int row, int step) {
+int all = 0;
+for (int y = low.y + row; y < high.y; y += step) {
+all |= imageLoad(skybark_sums, ivec3(low.x, y, slice)).x;
+all |= imageLoad(skybark_sums, ivec3(high.x - 1, y, slice)).x;
+}
+return all & int(skybark_header.w & 0xfffcu);
+}
 void skybark_add(uint i, uint s, int column, int step, ivec3 size) {
 voxel_slab slab = kernel_slab(i, s);
 if (slab.slice < 0 || slab.slice >= size.z) {
@@ -88,13 +97,20 @@ return;
 }
 ivec2 low = clamp(slab.low, ivec2(0), size.xy);
 ivec2 high = min(slab.high, size.xy);
-for (int x = low.x + column; x < high.x; x += step) {
+int first = low.x + column;
+if ((skybark_header.w & 2u) != 0u && low.x < high.x && high.y - low.y > 1) {
+first += skybark_fetch(low, high, slab.slice, column, step);
+}
+for (int x = first; x < high.x; x += step) {
 float lateral = kernel_lateral(i, x, slab.slice);
+float row = kernel_row(i, low.y);
 for (int y = low.y; y < high.y; ++y) {
-int amount = kernel_amount(i, lateral, y);
+float above = kernel_row(i, y + 1);
+int amount = kernel_amount(lateral, row, above);
 if (amount != 0) {
 imageAtomicAdd(skybark_sums, ivec3(x, y, slab.slice), amount);
 }
+row = above;
 }
 }
 }
@@ -120,7 +136,7 @@ for (uint s = first + slot; s < last; s += 16u / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 3817};
+)glsl", 4449};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define KERNEL_PARAMETERS uint most; int per_x; int per_z; int factor;
@@ -185,8 +201,9 @@ box.low.z + by);
 float kernel_lateral(uint i, int x, int z) {
 return float(boxes[i].low.w + per_x * x + per_z * z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-return (int(lateral) + boxes[i].high.w * y) * factor;
+float kernel_row(uint i, int y) { return float(boxes[i].high.w * y); }
+int kernel_amount(float lateral, float row, float above) {
+return int(lateral + 2.0 * row - above) * factor;
 }
 layout(location = 0) uniform ivec4 skybark_layers;
 layout(location = 1) uniform ivec4 skybark_tiles;
@@ -233,7 +250,7 @@ slab = skybark_visible(i, s);
 skybark_cell = ivec2(i, slab.slice);
 gl_Position = skybark_corner(slab, corners[uint(gl_VertexID) - rectangle * 6u]);
 }
-)glsl", 3925};
+)glsl", 4001};
     static constexpr std::string_view slabs_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define KERNEL_PARAMETERS uint most; int per_x; int per_z; int factor;
@@ -298,8 +315,9 @@ box.low.z + by);
 float kernel_lateral(uint i, int x, int z) {
 return float(boxes[i].low.w + per_x * x + per_z * z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-return (int(lateral) + boxes[i].high.w * y) * factor;
+float kernel_row(uint i, int y) { return float(boxes[i].high.w * y); }
+int kernel_amount(float lateral, float row, float above) {
+return int(lateral + 2.0 * row - above) * factor;
 }
 layout(location = 0) uniform ivec4 skybark_layers;
 layout(location = 1) uniform ivec4 skybark_tiles;
@@ -362,7 +380,7 @@ skybark_emit(i, slab);
 }
 }
 }
-)glsl", 4417};
+)glsl", 4493};
     static constexpr std::string_view slabs_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define KERNEL_PARAMETERS uint most; int per_x; int per_z; int factor;
@@ -427,8 +445,9 @@ box.low.z + by);
 float kernel_lateral(uint i, int x, int z) {
 return float(boxes[i].low.w + per_x * x + per_z * z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-return (int(lateral) + boxes[i].high.w * y) * factor;
+float kernel_row(uint i, int y) { return float(boxes[i].high.w * y); }
+int kernel_amount(float lateral, float row, float above) {
+return int(lateral + 2.0 * row - above) * factor;
 }
 layout(location = 0) uniform ivec4 skybark_layers;
 layout(location = 1) uniform ivec4 skybark_tiles;
@@ -462,12 +481,13 @@ void main() {
 int slice = skybark_cell.y;
 ivec2 at = ivec2(gl_FragCoord.xy) - skybark_origin(slice - skybark_layers.z);
 uint i = uint(skybark_cell.x);
-int amount = kernel_amount(i, kernel_lateral(i, at.x, slice), at.y);
+int amount = kernel_amount(kernel_lateral(i, at.x, slice), kernel_row(i, at.y),
+kernel_row(i, at.y + 1));
 int low = amount & 255;
 int carry = low >> 7;
 skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));
 }
-)glsl", 3732};
+)glsl", 3845};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 440f937f170bd8a7b034f7a4b7ce1d840c080cdf0d25ad622af6bde36437523b
+// sha256 c6e9920e82ccb2131d19a3b424a48108267912fbac2a65cec0371cc300dc8fd3
 #pragma once
 
 #include <skybark/kernels/shadow_polygon.hpp>
@@ -300,6 +300,7 @@ float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
 return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
 }
+float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 layout(std430, binding = 1) readonly buffer corners_buffer { vec4 corners[]; };
 uint kernel_slabs() { return 1u; }
 uint kernel_slab_count(uint i) {
@@ -315,12 +316,18 @@ float kernel_lateral(uint i, int x, int z) {
 cloud_particle p = particle_of(i);
 return lateral_of(p, place(p), x, z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-placed at = place(particle_of(i));
-return quanta(lateral * part_above(profile, y, at.centre.y, at.radius.y, sigmas));
-}
+float kernel_row(uint i, int y) { return part_of(place(particle_of(i)), y); }
+int kernel_amount(float lateral, float row, float above) { return quanta(lateral * row); }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
+int skybark_fetch(ivec2 low, ivec2 high, int slice, int row, int step) {
+int all = 0;
+for (int y = low.y + row; y < high.y; y += step) {
+all |= imageLoad(skybark_sums, ivec3(low.x, y, slice)).x;
+all |= imageLoad(skybark_sums, ivec3(high.x - 1, y, slice)).x;
+}
+return all & int(skybark_header.w & 0xfffcu);
+}
 void skybark_add(uint i, uint s, int column, int step, ivec3 size) {
 voxel_slab slab = kernel_slab(i, s);
 if (slab.slice < 0 || slab.slice >= size.z) {
@@ -328,13 +335,20 @@ return;
 }
 ivec2 low = clamp(slab.low, ivec2(0), size.xy);
 ivec2 high = min(slab.high, size.xy);
-for (int x = low.x + column; x < high.x; x += step) {
+int first = low.x + column;
+if ((skybark_header.w & 2u) != 0u && low.x < high.x && high.y - low.y > 1) {
+first += skybark_fetch(low, high, slab.slice, column, step);
+}
+for (int x = first; x < high.x; x += step) {
 float lateral = kernel_lateral(i, x, slab.slice);
+float row = kernel_row(i, low.y);
 for (int y = low.y; y < high.y; ++y) {
-int amount = kernel_amount(i, lateral, y);
+float above = kernel_row(i, y + 1);
+int amount = kernel_amount(lateral, row, above);
 if (amount != 0) {
 imageAtomicAdd(skybark_sums, ivec3(x, y, slab.slice), amount);
 }
+row = above;
 }
 }
 }
@@ -360,7 +374,7 @@ for (uint s = first + slot; s < last; s += 16u / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 9828};
+)glsl", 10481};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -649,6 +663,7 @@ float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
 return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
 }
+float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 layout(std430, binding = 1) readonly buffer corners_buffer { vec4 corners[]; };
 uint kernel_slabs() { return 1u; }
 uint kernel_slab_count(uint i) {
@@ -664,10 +679,8 @@ float kernel_lateral(uint i, int x, int z) {
 cloud_particle p = particle_of(i);
 return lateral_of(p, place(p), x, z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-placed at = place(particle_of(i));
-return quanta(lateral * part_above(profile, y, at.centre.y, at.radius.y, sigmas));
-}
+float kernel_row(uint i, int y) { return part_of(place(particle_of(i)), y); }
+int kernel_amount(float lateral, float row, float above) { return quanta(lateral * row); }
 layout(location = 0) uniform ivec4 skybark_layers;
 layout(location = 1) uniform ivec4 skybark_tiles;
 ivec2 skybark_origin(int n) {
@@ -713,7 +726,7 @@ slab = skybark_visible(i, s);
 skybark_cell = ivec2(i, slab.slice);
 gl_Position = skybark_corner(slab, corners[uint(gl_VertexID) - rectangle * 6u]);
 }
-)glsl", 9936};
+)glsl", 10033};
     static constexpr std::string_view slabs_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1002,6 +1015,7 @@ float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
 return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
 }
+float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 layout(std430, binding = 1) readonly buffer corners_buffer { vec4 corners[]; };
 uint kernel_slabs() { return 1u; }
 uint kernel_slab_count(uint i) {
@@ -1017,10 +1031,8 @@ float kernel_lateral(uint i, int x, int z) {
 cloud_particle p = particle_of(i);
 return lateral_of(p, place(p), x, z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-placed at = place(particle_of(i));
-return quanta(lateral * part_above(profile, y, at.centre.y, at.radius.y, sigmas));
-}
+float kernel_row(uint i, int y) { return part_of(place(particle_of(i)), y); }
+int kernel_amount(float lateral, float row, float above) { return quanta(lateral * row); }
 layout(location = 0) uniform ivec4 skybark_layers;
 layout(location = 1) uniform ivec4 skybark_tiles;
 ivec2 skybark_origin(int n) {
@@ -1082,7 +1094,7 @@ skybark_emit(i, slab);
 }
 }
 }
-)glsl", 10428};
+)glsl", 10525};
     static constexpr std::string_view slabs_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1371,6 +1383,7 @@ float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
 return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
 }
+float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 layout(std430, binding = 1) readonly buffer corners_buffer { vec4 corners[]; };
 uint kernel_slabs() { return 1u; }
 uint kernel_slab_count(uint i) {
@@ -1386,10 +1399,8 @@ float kernel_lateral(uint i, int x, int z) {
 cloud_particle p = particle_of(i);
 return lateral_of(p, place(p), x, z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-placed at = place(particle_of(i));
-return quanta(lateral * part_above(profile, y, at.centre.y, at.radius.y, sigmas));
-}
+float kernel_row(uint i, int y) { return part_of(place(particle_of(i)), y); }
+int kernel_amount(float lateral, float row, float above) { return quanta(lateral * row); }
 layout(location = 0) uniform ivec4 skybark_layers;
 layout(location = 1) uniform ivec4 skybark_tiles;
 ivec2 skybark_origin(int n) {
@@ -1422,12 +1433,13 @@ void main() {
 int slice = skybark_cell.y;
 ivec2 at = ivec2(gl_FragCoord.xy) - skybark_origin(slice - skybark_layers.z);
 uint i = uint(skybark_cell.x);
-int amount = kernel_amount(i, kernel_lateral(i, at.x, slice), at.y);
+int amount = kernel_amount(kernel_lateral(i, at.x, slice), kernel_row(i, at.y),
+kernel_row(i, at.y + 1));
 int low = amount & 255;
 int carry = low >> 7;
 skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));
 }
-)glsl", 9743};
+)glsl", 9877};
 };
 
 } // namespace skybark::opengl

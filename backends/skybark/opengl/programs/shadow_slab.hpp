@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 686aea22e30c724210fa0a60271deec9b72dc463cec8e6f2f6079a66340fbffd
+// sha256 75af9d38edb64b5209b4e3bebddd73d4023a5569167d1a93342c98c01d18dcba
 #pragma once
 
 #include <skybark/kernels/shadow_slab.hpp>
@@ -305,6 +305,7 @@ float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
 return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
 }
+float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
 uint kernel_slab_count(uint i) { return slice_count(place(particle_at(i))); }
 voxel_slab kernel_slab(uint i, uint s) {
@@ -318,10 +319,8 @@ float kernel_lateral(uint i, int x, int z) {
 cloud_particle p = particle_at(i);
 return lateral_of(p, place(p), x, z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-placed at = place(particle_at(i));
-return quanta(lateral * part_above(profile, y, at.centre.y, at.radius.y, sigmas));
-}
+float kernel_row(uint i, int y) { return part_of(place(particle_at(i)), y); }
+int kernel_amount(float lateral, float row, float above) { return quanta(lateral * row); }
 #ifdef SKYBARK_EXPAND
 uint kernel_strips() { return slices; }
 uint kernel_strip_triangles() { return 2u; }
@@ -386,7 +385,7 @@ for (; strip < last; ++strip) {
 skybark_run(skybark_header.x + element, strip, first, count);
 }
 }
-)glsl", 10437};
+)glsl", 10534};
     static constexpr std::string_view accumulate_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
@@ -678,6 +677,7 @@ float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
 return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
 }
+float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
 uint kernel_slab_count(uint i) { return slice_count(place(particle_at(i))); }
 voxel_slab kernel_slab(uint i, uint s) {
@@ -691,10 +691,8 @@ float kernel_lateral(uint i, int x, int z) {
 cloud_particle p = particle_at(i);
 return lateral_of(p, place(p), x, z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-placed at = place(particle_at(i));
-return quanta(lateral * part_above(profile, y, at.centre.y, at.radius.y, sigmas));
-}
+float kernel_row(uint i, int y) { return part_of(place(particle_at(i)), y); }
+int kernel_amount(float lateral, float row, float above) { return quanta(lateral * row); }
 #ifdef SKYBARK_EXPAND
 uint kernel_strips() { return slices; }
 uint kernel_strip_triangles() { return 2u; }
@@ -711,6 +709,14 @@ emit_vertex();
 #endif
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
+int skybark_fetch(ivec2 low, ivec2 high, int slice, int row, int step) {
+int all = 0;
+for (int y = low.y + row; y < high.y; y += step) {
+all |= imageLoad(skybark_sums, ivec3(low.x, y, slice)).x;
+all |= imageLoad(skybark_sums, ivec3(high.x - 1, y, slice)).x;
+}
+return all & int(skybark_header.w & 0xfffcu);
+}
 void skybark_add(uint i, uint s, int column, int step, ivec3 size) {
 voxel_slab slab = kernel_slab(i, s);
 if (slab.slice < 0 || slab.slice >= size.z) {
@@ -718,13 +724,20 @@ return;
 }
 ivec2 low = clamp(slab.low, ivec2(0), size.xy);
 ivec2 high = min(slab.high, size.xy);
-for (int x = low.x + column; x < high.x; x += step) {
+int first = low.x + column;
+if ((skybark_header.w & 2u) != 0u && low.x < high.x && high.y - low.y > 1) {
+first += skybark_fetch(low, high, slab.slice, column, step);
+}
+for (int x = first; x < high.x; x += step) {
 float lateral = kernel_lateral(i, x, slab.slice);
+float row = kernel_row(i, low.y);
 for (int y = low.y; y < high.y; ++y) {
-int amount = kernel_amount(i, lateral, y);
+float above = kernel_row(i, y + 1);
+int amount = kernel_amount(lateral, row, above);
 if (amount != 0) {
 imageAtomicAdd(skybark_sums, ivec3(x, y, slab.slice), amount);
 }
+row = above;
 }
 }
 }
@@ -750,7 +763,7 @@ for (uint s = first + slot; s < last; s += 16u / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 10290};
+)glsl", 10943};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1040,6 +1053,7 @@ float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
 return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
 }
+float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
 uint kernel_slab_count(uint i) { return slice_count(place(particle_at(i))); }
 voxel_slab kernel_slab(uint i, uint s) {
@@ -1053,10 +1067,8 @@ float kernel_lateral(uint i, int x, int z) {
 cloud_particle p = particle_at(i);
 return lateral_of(p, place(p), x, z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-placed at = place(particle_at(i));
-return quanta(lateral * part_above(profile, y, at.centre.y, at.radius.y, sigmas));
-}
+float kernel_row(uint i, int y) { return part_of(place(particle_at(i)), y); }
+int kernel_amount(float lateral, float row, float above) { return quanta(lateral * row); }
 #ifdef SKYBARK_EXPAND
 uint kernel_strips() { return slices; }
 uint kernel_strip_triangles() { return 2u; }
@@ -1116,7 +1128,7 @@ slab = skybark_visible(i, s);
 skybark_cell = ivec2(i, slab.slice);
 gl_Position = skybark_corner(slab, corners[uint(gl_VertexID) - rectangle * 6u]);
 }
-)glsl", 10398};
+)glsl", 10495};
     static constexpr std::string_view slabs_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1406,6 +1418,7 @@ float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
 return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
 }
+float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
 uint kernel_slab_count(uint i) { return slice_count(place(particle_at(i))); }
 voxel_slab kernel_slab(uint i, uint s) {
@@ -1419,10 +1432,8 @@ float kernel_lateral(uint i, int x, int z) {
 cloud_particle p = particle_at(i);
 return lateral_of(p, place(p), x, z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-placed at = place(particle_at(i));
-return quanta(lateral * part_above(profile, y, at.centre.y, at.radius.y, sigmas));
-}
+float kernel_row(uint i, int y) { return part_of(place(particle_at(i)), y); }
+int kernel_amount(float lateral, float row, float above) { return quanta(lateral * row); }
 #ifdef SKYBARK_EXPAND
 uint kernel_strips() { return slices; }
 uint kernel_strip_triangles() { return 2u; }
@@ -1498,7 +1509,7 @@ skybark_emit(i, slab);
 }
 }
 }
-)glsl", 10890};
+)glsl", 10987};
     static constexpr std::string_view slabs_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1788,6 +1799,7 @@ float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
 return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
 }
+float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
 uint kernel_slab_count(uint i) { return slice_count(place(particle_at(i))); }
 voxel_slab kernel_slab(uint i, uint s) {
@@ -1801,10 +1813,8 @@ float kernel_lateral(uint i, int x, int z) {
 cloud_particle p = particle_at(i);
 return lateral_of(p, place(p), x, z);
 }
-int kernel_amount(uint i, float lateral, int y) {
-placed at = place(particle_at(i));
-return quanta(lateral * part_above(profile, y, at.centre.y, at.radius.y, sigmas));
-}
+float kernel_row(uint i, int y) { return part_of(place(particle_at(i)), y); }
+int kernel_amount(float lateral, float row, float above) { return quanta(lateral * row); }
 #ifdef SKYBARK_EXPAND
 uint kernel_strips() { return slices; }
 uint kernel_strip_triangles() { return 2u; }
@@ -1851,12 +1861,13 @@ void main() {
 int slice = skybark_cell.y;
 ivec2 at = ivec2(gl_FragCoord.xy) - skybark_origin(slice - skybark_layers.z);
 uint i = uint(skybark_cell.x);
-int amount = kernel_amount(i, kernel_lateral(i, at.x, slice), at.y);
+int amount = kernel_amount(kernel_lateral(i, at.x, slice), kernel_row(i, at.y),
+kernel_row(i, at.y + 1));
 int low = amount & 255;
 int carry = low >> 7;
 skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));
 }
-)glsl", 10205};
+)glsl", 10339};
 };
 
 } // namespace skybark::opengl
