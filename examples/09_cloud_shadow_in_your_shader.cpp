@@ -92,10 +92,11 @@ class painter {
         program_ = make_program();
         // Volumes are sampled with whatever sampler is yours: linear, clamped to the edges.
         gl_.call<PFNGLCREATESAMPLERSPROC>("glCreateSamplers", 1, &sampler_);
-        for (const GLenum which : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+        for (const GLenum which : {GLenum{GL_TEXTURE_MIN_FILTER}, GLenum{GL_TEXTURE_MAG_FILTER}}) {
             gl_.call<PFNGLSAMPLERPARAMETERIPROC>("glSamplerParameteri", sampler_, which, GL_LINEAR);
         }
-        for (const GLenum which : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
+        for (const GLenum which :
+             {GLenum{GL_TEXTURE_WRAP_S}, GLenum{GL_TEXTURE_WRAP_T}, GLenum{GL_TEXTURE_WRAP_R}}) {
             gl_.call<PFNGLSAMPLERPARAMETERIPROC>("glSamplerParameteri", sampler_, which,
                                                  GL_CLAMP_TO_EDGE);
         }
@@ -127,9 +128,10 @@ class painter {
     void draw_ground(int half, GLuint volume, const skybark::light_grid& grid) const {
         gl_.call<PFNGLNAMEDBUFFERSUBDATAPROC>("glNamedBufferSubData", block_, GLintptr{0},
                                               GLsizeiptr{sizeof grid}, &grid);
-        gl_.call<PFNGLBINDBUFFERBASEPROC>("glBindBufferBase", GLenum{GL_UNIFORM_BUFFER}, 0, block_);
-        gl_.call<PFNGLBINDTEXTUREUNITPROC>("glBindTextureUnit", 0, volume);
-        gl_.call<PFNGLBINDSAMPLERPROC>("glBindSampler", 0, sampler_);
+        gl_.call<PFNGLBINDBUFFERBASEPROC>("glBindBufferBase", GLenum{GL_UNIFORM_BUFFER}, GLuint{0},
+                                          block_);
+        gl_.call<PFNGLBINDTEXTUREUNITPROC>("glBindTextureUnit", GLuint{0}, volume);
+        gl_.call<PFNGLBINDSAMPLERPROC>("glBindSampler", GLuint{0}, sampler_);
         gl_.call<PFNGLBINDFRAMEBUFFERPROC>("glBindFramebuffer", GLenum{GL_FRAMEBUFFER},
                                            framebuffer_);
         gl_.call<PFNGLVIEWPORTPROC>("glViewport", half * side, 0, side, side);

@@ -122,7 +122,8 @@ class caller_shader_test : public testing::Test {
         };
         set(GL_TEXTURE_MIN_FILTER, GL_LINEAR);
         set(GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-        for (const GLenum side : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
+        for (const GLenum side :
+             {GLenum{GL_TEXTURE_WRAP_S}, GLenum{GL_TEXTURE_WRAP_T}, GLenum{GL_TEXTURE_WRAP_R}}) {
             set(side, GL_CLAMP_TO_EDGE);
         }
         return name;
@@ -139,10 +140,13 @@ TEST_F(caller_shader_test, finds_light_in_the_volumes) {
                                  glsl::cloud_scattering, glsl::phase, own});
     support::caller_light<gpu> light(*device);
     for (const glm::vec3 sun : {glm::vec3(0.3f, 0.9f, 0.2f), glm::vec3(-0.8f, 0.25f, 0.1f)}) {
-        support::caller_moment now;
-        const auto done = run(*device, [&](recorder& r) { now = light.relight(r, sun); });
+        auto recorded = device->begin();
+        ASSERT_TRUE(recorded) << recorded.error().message;
+        const support::caller_moment now = light.relight(*recorded, sun);
+        const std::vector<caller_found> found = ask(mine, light, now);
+        const auto done = device->submit(*recorded);
         ASSERT_TRUE(done) << done.error().message;
-        light.expect_right(ask(mine, light, now), now, light.fluence_cells());
+        light.expect_right(found, now, light.fluence_cells());
     }
 }
 

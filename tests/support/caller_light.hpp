@@ -51,8 +51,8 @@ class caller_light {
     static constexpr float albedo = 0.9f;
     static constexpr glm::uvec3 voxels{112, 96, 112};
     static inline const std::array<cloud_particle, 2> particles{
-        cloud_particle{{0, 100, 0}, 60, 3, albedo, 0, 0},
-        cloud_particle{{25, 120, 10}, 48, 1.5f, albedo, 0, 0}};
+        cloud_particle{{0, 100, 0}, 60, 3, albedo, {}},
+        cloud_particle{{25, 120, 10}, 48, 1.5f, albedo, {}}};
 
     explicit caller_light(B& device) : device_(&device) {
         medium_.albedo = albedo;
