@@ -4,6 +4,7 @@
 #include "../skeletons/parameters.glsl"
 #include "../shared/shading.glsl"
 #include "../shared/cloud_lighting.glsl"
+#include "../shared/puff.glsl"
 #include "scene.glsl.inc"
 layout(std430, binding = 0) readonly buffer particles_buffer { vec4 particles[]; };
 layout(std430, binding = 1) readonly buffer order_buffer { uint order[]; };
@@ -70,6 +71,10 @@ bool kernel_fragment(vec2 pixel, bool front) {
     float rho2 = dot(offset, offset) - past * past;
     float ahead = reach - past;
     float depth = puff_depth(varying_in[0].w, rho2, ahead, radius, lighting.sigmas);
+    if (lighting.torn > 0.0 && depth > least_alpha) {
+        float noise = puff_noise(scene.camera.xyz + along, lighting.grain);
+        depth = varying_in[0].w * puff_torn(depth / varying_in[0].w, noise, lighting.torn);
+    }
     float alpha = one_minus_exp(depth);
     if (alpha < least_alpha) {
         return false;

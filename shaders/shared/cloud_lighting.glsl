@@ -23,9 +23,9 @@ struct cloud_lighting {
     uint document;           // 1: S = a tau P I; 0: a (1 - exp -tau) P I
     uint by_particle;        // 1: one light value a particle, from a buffer
     uint forward_point;      // 1: lit where what is seen was scattered; 0: in the billboard's plane
+    float torn;              // how deep noise eats into a particle's outline, below 1; 0: not at all
+    float grain;             // 1/m: 1 / the size of that noise's largest grains
     uint reserved0;
-    uint reserved1;
-    uint reserved2;
 };
 
 // What scatters, where a part f of what is scattered goes on as if nothing had happened: optical

@@ -75,6 +75,14 @@ inline void add_sky(cloud_lighting& lighting, const attenuation_options& options
     lighting.sky_thickness = static_cast<float>(0.75 * (1 - g) / kept);
 }
 
+/// Noise that eats into the particles' outlines, `torn` of them at most (below 1), with grains of
+/// up to `grain` m: billows smaller than the particles, and edges sharper than a Gaussian's. Of the
+/// picture alone: the volumes, and so the light, are those of the particles as they are.
+inline void add_tears(cloud_lighting& lighting, float torn, float grain) {
+    lighting.torn = torn;
+    lighting.grain = 1 / grain;
+}
+
 /// What a draw of clouds is lit by. Volumes that the lighting does not use may be absent, that of
 /// the sun not.
 template <volume_backend B>

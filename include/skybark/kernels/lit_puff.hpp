@@ -6,6 +6,7 @@
 // premultiplied alpha, S is the colour and 1 − T the alpha.
 
 #include <skybark/kernels/cloud_scene.hpp>
+#include <skybark/shared/puff.hpp>
 
 #include <cmath>
 
@@ -15,6 +16,9 @@ namespace skybark::kernels {
 /// their order, one light value a particle (read only where the lighting says so), one scene, one
 /// lighting. Volumes: the attenuation of the sun, that straight up, and diffuse light; all three
 /// have to be bound, to any volume where the lighting doesn't use them.
+///
+/// With lighting.torn, noise that is at rest in space eats into each particle's optical depth where
+/// its billboard is; what is left is lit as it would be.
 ///
 /// A particle that the eye is in, or nearly, covers the screen, and shows what of it lies before
 /// the eye. What is behind the eye isn't drawn.
@@ -97,7 +101,12 @@ struct lit_puff {
         const float past = glm::dot(offset, direction);
         const float rho2 = glm::dot(offset, offset) - past * past;
         const float ahead = reach - past;
-        const float depth = shared::puff_depth(in[0].w, rho2, ahead, radius, how.sigmas);
+        float depth = shared::puff_depth(in[0].w, rho2, ahead, radius, how.sigmas);
+        if (how.torn > 0.0f && depth > least_alpha) {
+            const glm::vec3 there = glm::vec3(scene[0].camera) + along;
+            depth = in[0].w * shared::puff_torn(depth / in[0].w,
+                                                shared::puff_noise(there, how.grain), how.torn);
+        }
         const float alpha = shared::one_minus_exp(depth);
         if (alpha < least_alpha) {
             return {{}, false};

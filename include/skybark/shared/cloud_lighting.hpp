@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 737115d68d50834b2058db39de8947a22a61f9b4c119d972fe016178a99e4a98
+// sha256 1472d2fdadbeeaf043405467faec83f31d952b305a487f84d93da4cecc9f1aa3
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -31,9 +31,9 @@ struct cloud_lighting {
     uint document;           // 1: S = a tau P I; 0: a (1 - exp -tau) P I
     uint by_particle;        // 1: one light value a particle, from a buffer
     uint forward_point;      // 1: lit where what is seen was scattered; 0: in the billboard's plane
+    float torn;              // how deep noise eats into a particle's outline, below 1; 0: not at all
+    float grain;             // 1/m: 1 / the size of that noise's largest grains
     uint reserved0;
-    uint reserved1;
-    uint reserved2;
 };
 
 // What scatters, where a part f of what is scattered goes on as if nothing had happened: optical

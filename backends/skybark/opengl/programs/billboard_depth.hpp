@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ec9152a8372170afa3d7593413eca23fa770a16816c13874bac37cd751f1a6e3
+// sha256 e6468bc034631f09ddfdc5cf195853ef5c923451d43bf17b260b4a21ae0d4c53
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>
@@ -313,9 +313,9 @@ float diffuse;
 uint document;
 uint by_particle;
 uint forward_point;
+float torn;
+float grain;
 uint reserved0;
-uint reserved1;
-uint reserved2;
 };
 struct scaled_scattering {
 float depth;
@@ -412,7 +412,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 10806};
+)glsl", 10799};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -718,9 +718,9 @@ float diffuse;
 uint document;
 uint by_particle;
 uint forward_point;
+float torn;
+float grain;
 uint reserved0;
-uint reserved1;
-uint reserved2;
 };
 struct scaled_scattering {
 float depth;
@@ -816,7 +816,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 10821};
+)glsl", 10814};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 49fd9a8cfbc1dbb532bb77f6f1f1af8c592608084d26e6d9f896dbbceb4144b0
+// sha256 d2859b2750c3d5704fcfbe9ea9ca52425a7350db9f514ff1ce1d2572e36cc98c
 #pragma once
 
 #include <skybark/kernels/lit_grid.hpp>
@@ -433,9 +433,9 @@ float diffuse;
 uint document;
 uint by_particle;
 uint forward_point;
+float torn;
+float grain;
 uint reserved0;
-uint reserved1;
-uint reserved2;
 };
 struct scaled_scattering {
 float depth;
@@ -633,7 +633,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 19355};
+)glsl", 19348};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1057,9 +1057,9 @@ float diffuse;
 uint document;
 uint by_particle;
 uint forward_point;
+float torn;
+float grain;
 uint reserved0;
-uint reserved1;
-uint reserved2;
 };
 struct scaled_scattering {
 float depth;
@@ -1261,7 +1261,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 19368};
+)glsl", 19361};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 36d32241ecab2e1003b2565f3eb44e725b4c1501fc103c9b71c31a9daa3ef6df
+// sha256 2aabe75dbf89d03c4403e657466d89496bed165cb531a8fdb8b8c47c54116704
 #pragma once
 
 #include <skybark/kernels/lit_puff.hpp>
@@ -431,9 +431,9 @@ float diffuse;
 uint document;
 uint by_particle;
 uint forward_point;
+float torn;
+float grain;
 uint reserved0;
-uint reserved1;
-uint reserved2;
 };
 struct scaled_scattering {
 float depth;
@@ -509,6 +509,30 @@ last = min(last, max(a, b));
 }
 }
 return vec2(first, last);
+}
+struct puff_radiance {
+vec4 middle;
+vec4 right;
+vec4 up;
+vec4 air;
+};
+vec3 puff_right(vec3 ahead) {
+bool steep = ahead.y * ahead.y > 0.98f;
+float x = steep ? 0.0f : -ahead.z;
+float y = steep ? ahead.z : 0.0f;
+float z = steep ? -ahead.y : ahead.x;
+float over = 1.0f / sqrt(x * x + y * y + z * z);
+return vec3(x * over, y * over, z * over);
+}
+float puff_noise(vec3 place, float over) {
+float coarse = value_noise(place.x * over, place.y * over, place.z * over, 16384u);
+float twice = 2.17f * over;
+float fine = value_noise(place.x * twice, place.y * twice, place.z * twice, 16384u);
+return 0.62f * coarse + 0.38f * fine;
+}
+float puff_torn(float body, float noise, float torn) {
+float cut = torn * noise;
+return max(body - cut, 0.0f) / (1.0f - cut);
 }
 struct scene_record {
 mat4 to_clip;
@@ -633,6 +657,10 @@ float past = dot(offset, direction);
 float rho2 = dot(offset, offset) - past * past;
 float ahead = reach - past;
 float depth = puff_depth(varying_in[0].w, rho2, ahead, radius, lighting.sigmas);
+if (lighting.torn > 0.0 && depth > least_alpha) {
+float noise = puff_noise(scene.camera.xyz + along, lighting.grain);
+depth = varying_in[0].w * puff_torn(depth / varying_in[0].w, noise, lighting.torn);
+}
 float alpha = one_minus_exp(depth);
 if (alpha < least_alpha) {
 return false;
@@ -651,7 +679,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 20165};
+)glsl", 21111};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1073,9 +1101,9 @@ float diffuse;
 uint document;
 uint by_particle;
 uint forward_point;
+float torn;
+float grain;
 uint reserved0;
-uint reserved1;
-uint reserved2;
 };
 struct scaled_scattering {
 float depth;
@@ -1151,6 +1179,30 @@ last = min(last, max(a, b));
 }
 }
 return vec2(first, last);
+}
+struct puff_radiance {
+vec4 middle;
+vec4 right;
+vec4 up;
+vec4 air;
+};
+vec3 puff_right(vec3 ahead) {
+bool steep = ahead.y * ahead.y > 0.98f;
+float x = steep ? 0.0f : -ahead.z;
+float y = steep ? ahead.z : 0.0f;
+float z = steep ? -ahead.y : ahead.x;
+float over = 1.0f / sqrt(x * x + y * y + z * z);
+return vec3(x * over, y * over, z * over);
+}
+float puff_noise(vec3 place, float over) {
+float coarse = value_noise(place.x * over, place.y * over, place.z * over, 16384u);
+float twice = 2.17f * over;
+float fine = value_noise(place.x * twice, place.y * twice, place.z * twice, 16384u);
+return 0.62f * coarse + 0.38f * fine;
+}
+float puff_torn(float body, float noise, float torn) {
+float cut = torn * noise;
+return max(body - cut, 0.0f) / (1.0f - cut);
 }
 struct scene_record {
 mat4 to_clip;
@@ -1275,6 +1327,10 @@ float past = dot(offset, direction);
 float rho2 = dot(offset, offset) - past * past;
 float ahead = reach - past;
 float depth = puff_depth(varying_in[0].w, rho2, ahead, radius, lighting.sigmas);
+if (lighting.torn > 0.0 && depth > least_alpha) {
+float noise = puff_noise(scene.camera.xyz + along, lighting.grain);
+depth = varying_in[0].w * puff_torn(depth / varying_in[0].w, noise, lighting.torn);
+}
 float alpha = one_minus_exp(depth);
 if (alpha < least_alpha) {
 return false;
@@ -1297,7 +1353,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 20178};
+)glsl", 21124};
 };
 
 } // namespace skybark::opengl

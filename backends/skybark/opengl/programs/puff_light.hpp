@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 3cf598cb32d5ba7a2b15a20e9cfe35a45a567caefe13158b2e80f0c1646d223f
+// sha256 d51bd5e630b5af2464121c596410f92fa5196be708a54119f3a07c32283ce981
 #pragma once
 
 #include <skybark/kernels/puff_light.hpp>
@@ -431,9 +431,9 @@ float diffuse;
 uint document;
 uint by_particle;
 uint forward_point;
+float torn;
+float grain;
 uint reserved0;
-uint reserved1;
-uint reserved2;
 };
 struct scaled_scattering {
 float depth;
@@ -644,7 +644,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 19702};
+)glsl", 19695};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -1068,9 +1068,9 @@ float diffuse;
 uint document;
 uint by_particle;
 uint forward_point;
+float torn;
+float grain;
 uint reserved0;
-uint reserved1;
-uint reserved2;
 };
 struct scaled_scattering {
 float depth;
@@ -1280,7 +1280,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 19717};
+)glsl", 19710};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ded00d26b8498bdbf186f7dc485a7def1413a8a724960e3d0c16e320338df5e7
+// sha256 11de3259671e34f8f4c0eb9c8983888040daa7e541650940c552c9ac11fd4a5c
 #pragma once
 
 #include <skybark/kernels/torn_puff.hpp>
@@ -431,9 +431,9 @@ float diffuse;
 uint document;
 uint by_particle;
 uint forward_point;
+float torn;
+float grain;
 uint reserved0;
-uint reserved1;
-uint reserved2;
 };
 struct scaled_scattering {
 float depth;
@@ -635,7 +635,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 19186};
+)glsl", 19179};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1057,9 +1057,9 @@ float diffuse;
 uint document;
 uint by_particle;
 uint forward_point;
+float torn;
+float grain;
 uint reserved0;
-uint reserved1;
-uint reserved2;
 };
 struct scaled_scattering {
 float depth;
@@ -1265,7 +1265,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 19199};
+)glsl", 19192};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 2e85dffe676f1c99703d349e20f11c3ae499fbbc0f8b99c9205a2feb47c8efc7
+// sha256 9fa73b06bab17a31588f924072679a133d5d62653dc6eec47f77baaa0d7148e0
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>
