@@ -12,8 +12,9 @@
 // `extinction` times the pile's volume, however many particles there are.
 //
 // The same options give the same particles. Extinction: 1.5 · liquid water / (density of water ·
-// radius of droplets). 0.3 g/m³ of droplets of 10 µm, as in small fair-weather clouds, make
-// 0.045 1/m; 1.3 g/m³, what rising air condenses over 700 m, 0.2 1/m: that gives hard edges.
+// radius of droplets). 0.3 g/m³ of droplets with a radius of 10 µm, as in small fair-weather
+// clouds, make 0.045 1/m; 1.3 g/m³, what rising air condenses over 700 m, in droplets of 5 µm 0.4
+// 1/m: that gives hard edges.
 
 #include <skybark/core/records.hpp>
 
@@ -36,7 +37,7 @@ struct cumulus_options {
     float width = 1500;              ///< m, across the base
     float thickness = 800;           ///< m, from the base to the highest top
     std::uint32_t particles = 12000; ///< as many are made
-    float extinction = 0.2f;         ///< 1/m, inside
+    float extinction = 0.4f;         ///< 1/m, inside
     float albedo = 1;                ///< of a single scattering
 };
 
@@ -49,7 +50,7 @@ struct cumulus_field_options {
     std::uint32_t particles_per_cloud = 4000; ///< on average: large clouds have more
     float width = 1600;                       ///< m, across the largest
     float thickness = 900;                    ///< m, of the largest
-    float extinction = 0.2f;                  ///< 1/m, inside
+    float extinction = 0.4f;                  ///< 1/m, inside
     float albedo = 1;
 };
 
@@ -208,13 +209,13 @@ inline bool cumulus_buried(const cumulus_ball* balls, std::size_t count, glm::dv
 inline std::vector<cumulus_ball> cumulus_pile(cumulus_random& random, double half, double thickness,
                                               double smallest) {
     std::vector<cumulus_ball> balls = cumulus_towers(random, half, thickness);
-    constexpr std::array<int, 3> on_each{9, 8, 7};
+    constexpr std::array<int, 4> on_each{14, 14, 12, 10};
     std::size_t first = 0;
     for (const int puffs : on_each) {
         const std::size_t last = balls.size();
         for (std::size_t parent = first; parent < last; ++parent) {
             for (int i = 0; i < puffs; ++i) {
-                const double radius = balls[parent].radius * random.between(0.3, 0.52);
+                const double radius = balls[parent].radius * random.between(0.26, 0.5);
                 const glm::dvec3 centre =
                     balls[parent].centre + random.direction(-0.25) * (0.93 * balls[parent].radius);
                 if (radius >= smallest && centre.y + radius <= thickness &&
@@ -225,15 +226,24 @@ inline std::vector<cumulus_ball> cumulus_pile(cumulus_random& random, double hal
         }
         first = last;
     }
-    const int shreds = 22;
+    // Each shred is a row of balls around the foot, smaller and smaller.
+    const int shreds = 9;
     for (int i = 0; i < shreds; ++i) {
         const double angle = 2 * std::numbers::pi * random.unit();
-        const double out = half * random.between(0.8, 1.12);
-        const double radius = std::min(half * random.between(0.03, 0.09), 0.2 * thickness);
-        balls.push_back(
-            {{out * std::cos(angle), radius * random.between(0.3, 1.4), out * std::sin(angle)},
-             radius,
-             random.between(0.08, 0.3)});
+        const double turn = random.unit() < 0.5 ? 1 : -1;
+        const double density = random.between(0.1, 0.35);
+        double radius = std::min(half * random.between(0.05, 0.1), 0.2 * thickness);
+        double along = 0;
+        double height = radius * random.between(0.3, 1.1);
+        for (int piece = 0; piece < 4; ++piece) {
+            const double at = angle + turn * along / half;
+            const double out = half * random.between(0.84, 0.98);
+            balls.push_back({{out * std::cos(at), height, out * std::sin(at)}, radius, density});
+            along += 1.1 * radius;
+            radius *= 0.72;
+            height += radius * random.between(-0.3, 0.5);
+            height = std::max(height, 0.2 * radius);
+        }
     }
     return balls;
 }
