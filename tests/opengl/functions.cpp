@@ -193,6 +193,8 @@ static_assert(gl::object_sampler == GL_SAMPLER);
 static_assert(gl::object_vertex_array == GL_VERTEX_ARRAY);
 static_assert(gl::object_texture == GL_TEXTURE);
 static_assert(gl::object_framebuffer == GL_FRAMEBUFFER);
+static_assert(gl::rg == GL_RG);
+static_assert(gl::rg32f == GL_RG32F);
 
 #define SKYBARK_SAME(name, theirs)                                                                 \
     static_assert(std::is_same_v<decltype(gl::functions::name), decltype(&theirs)>)
@@ -276,6 +278,8 @@ SKYBARK_SAME(named_framebuffer_parameter, glNamedFramebufferParameteri);
 SKYBARK_SAME(named_framebuffer_draw_buffer, glNamedFramebufferDrawBuffer);
 SKYBARK_SAME(clear_named_framebuffer, glClearNamedFramebufferfv);
 SKYBARK_SAME(clear_named_framebuffer_words, glClearNamedFramebufferuiv);
+SKYBARK_SAME(clear_tex_image, glClearTexImage);
+SKYBARK_SAME(clear_tex_sub_image, glClearTexSubImage);
 SKYBARK_SAME(create_textures, glCreateTextures);
 SKYBARK_SAME(delete_textures, glDeleteTextures);
 SKYBARK_SAME(texture_buffer, glTextureBuffer);

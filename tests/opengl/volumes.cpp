@@ -37,7 +37,7 @@ std::vector<std::int32_t> expected_sums(const probe_slabs& kernel, std::span<con
                     if (z >= 0 && z < static_cast<int>(size.depth)) {
                         const std::int64_t amount =
                             (box.low.w + std::int64_t{kernel.per_x} * x + kernel.per_z * z +
-                             std::int64_t{box.high.w} * y) *
+                             std::int64_t{box.high.w} * (y - 1)) *
                             kernel.factor;
                         sums[(static_cast<std::size_t>(z) * size.height +
                               static_cast<std::size_t>(y)) *
@@ -363,6 +363,7 @@ TEST_F(callers_volumes_test, layers_that_do_not_fit_into_a_target_are_drawn_in_t
 /// What makes storage on the device, counted; OpenGL's own functions know nothing of it.
 struct counted_storage {
     inline static int made = 0;
+    inline static GLsizei most_texels = 0; ///< of a texture
     inline static PFNGLNAMEDBUFFERSTORAGEPROC buffer = nullptr;
     inline static PFNGLTEXTURESTORAGE2DPROC flat = nullptr;
     inline static PFNGLTEXTURESTORAGE3DPROC deep = nullptr;
@@ -375,11 +376,13 @@ struct counted_storage {
     static void APIENTRY make_flat(GLuint name, GLsizei levels, GLenum format, GLsizei width,
                                    GLsizei height) {
         ++made;
+        most_texels = std::max(most_texels, width * height);
         flat(name, levels, format, width, height);
     }
     static void APIENTRY make_deep(GLuint name, GLsizei levels, GLenum format, GLsizei width,
                                    GLsizei height, GLsizei depth) {
         ++made;
+        most_texels = std::max(most_texels, width * height * depth);
         deep(name, levels, format, width, height, depth);
     }
     static procedure find(const char* name, void* user) {
@@ -424,6 +427,89 @@ TEST_F(callers_volumes_test, a_frame_like_the_last_one_allocates_nothing_on_the_
     EXPECT_EQ(counted_storage::made, 0);
     EXPECT_TRUE(run(*device, [&](recorder& r) { frame(r, larger, 150); }));
     EXPECT_EQ(counted_storage::made, 2); // 4 × 3 tiles instead of 3 × 3, and the layers
+    counted_storage::made = 0;
+    EXPECT_TRUE(run(*device, [&](recorder& r) { frame(r, into, 150); }));
+    EXPECT_TRUE(run(*device, [&](recorder& r) { frame(r, larger, 150); }));
+    EXPECT_EQ(counted_storage::made, 0);
+}
+
+// As those of a sun and a sky: both fit into what the larger one, or the two together, have asked
+// for; and what is beside a volume in a target that is too large for it is not added to it.
+TEST_F(callers_volumes_test, volumes_of_several_sizes_take_turns_without_allocating) {
+    description described = caller.describe();
+    described.get_proc_address = &counted_storage::find;
+    auto device = gpu::create(std::move(described));
+    ASSERT_TRUE(device) << device.error().message;
+    const probe_slabs kernel{4, 1, 2, 3};
+    const std::array<volume_description, 3> sizes = {
+        volume_description{20, 11, 12, volume_format::int32},
+        {7, 23, 5, volume_format::int32},
+        {5, 6, 31, volume_format::int32}};
+    const auto boxes = scattered_boxes(300, sizes[0], 8);
+    const buffer bound = *make_buffer<gpu, probe_box>(*device, boxes);
+    std::vector<volume> volumes;
+    for (const volume_description& size : sizes) {
+        volumes.push_back(*device->create_volume(size));
+    }
+    for (int turn = 0; turn < 3; ++turn) {
+        counted_storage::made = 0;
+        for (const volume& into : volumes) {
+            const auto wanted = expected_sums(kernel, boxes, into.description());
+            for (const accumulate_route route : all_routes) {
+                const padding policy = turn == 1 ? padding::compact : padding::degenerate;
+                ASSERT_TRUE(run(*device, [&](recorder& r) {
+                    r.accumulate(kernel, {view<gpu>(bound)}, range{0, 300},
+                                 {&into, true, route, policy});
+                }));
+                std::vector<std::int32_t> got(wanted.size());
+                ASSERT_TRUE(device->download(into, std::as_writable_bytes(std::span(got))));
+                EXPECT_EQ(got, wanted) << name_of(route, policy);
+            }
+        }
+        EXPECT_EQ(counted_storage::made > 0, turn == 0);
+    }
+    // More than can be summed without a carry in between, into a corner of the target.
+    const std::vector<probe_box> pile(140000, {{1, 1, 1, 127}, {2, 2, 2, 0}});
+    const buffer piled = *make_buffer<gpu, probe_box>(*device, pile);
+    for (const accumulate_route route : all_routes) {
+        ASSERT_TRUE(run(*device, [&](recorder& r) {
+            r.accumulate(probe_slabs{1}, {view<gpu>(piled)}, range{0, 140000},
+                         {&volumes[1], true, route, padding::compact});
+        }));
+        std::vector<std::int32_t> got(7 * 23 * 5);
+        ASSERT_TRUE(device->download(volumes[1], std::as_writable_bytes(std::span(got))));
+        EXPECT_EQ(got[(1 * 23 + 1) * 7 + 1], 127 * 140000) << name_of(route, padding::compact);
+    }
+}
+
+// Together they would be 30 × 30 × 30 voxels of 8 bytes.
+TEST_F(callers_volumes_test, targets_of_several_sizes_stay_as_small_as_described) {
+    description described = caller.describe();
+    described.get_proc_address = &counted_storage::find;
+    described.max_target_bytes = 8 * 4000;
+    auto device = gpu::create(std::move(described));
+    ASSERT_TRUE(device) << device.error().message;
+    const probe_slabs kernel{4, 1, 2, 3};
+    counted_storage::most_texels = 0;
+    for (const volume_description& size : {volume_description{30, 30, 4, volume_format::int32},
+                                           {30, 4, 30, volume_format::int32},
+                                           {4, 30, 30, volume_format::int32}}) {
+        const auto boxes = scattered_boxes(100, size, 3);
+        const buffer bound = *make_buffer<gpu, probe_box>(*device, boxes);
+        const volume into = *device->create_volume(size);
+        const auto wanted = expected_sums(kernel, boxes, size);
+        for (const accumulate_route route : all_routes) {
+            ASSERT_TRUE(run(*device, [&](recorder& r) {
+                r.accumulate(kernel, {view<gpu>(bound)}, range{0, 100},
+                             {&into, true, route, padding::compact});
+            }));
+            std::vector<std::int32_t> got(wanted.size());
+            ASSERT_TRUE(device->download(into, std::as_writable_bytes(std::span(got))));
+            EXPECT_EQ(got, wanted) << name_of(route, padding::compact);
+        }
+    }
+    EXPECT_LE(counted_storage::most_texels, 4000);
+    EXPECT_GE(counted_storage::most_texels, 3600);
 }
 
 } // namespace

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <glm/common.hpp>
 #include <memory>
 #include <vector>
 

@@ -19,7 +19,8 @@
 // direct route alone.
 //
 // The textures that are drawn into, 8 bytes a voxel and with tiles as much again, are kept by the
-// context: calls for volumes of the same size allocate nothing.
+// context and only grow: calls for volumes that have been there, in any order, allocate nothing.
+// What lies beyond a volume in a target that is larger is left alone.
 
 #include <skybark/opengl/programs/own_add_sums.hpp>
 #include <skybark/opengl/programs/own_carry.hpp>
@@ -37,7 +38,6 @@ inline constexpr std::uint32_t layers_unit = 6;
 
 /// One less than 2¹⁷: what is left of a carry counts like one more amount.
 inline constexpr std::uint32_t exact_rectangles = (1u << 17) - 1;
-inline constexpr std::uint64_t sum_bytes = 8;
 /// Of one invocation of the geometry stage: four vertices of seven components each, of 1,024.
 inline constexpr std::uint32_t max_rectangles_a_point = 32;
 
@@ -55,7 +55,7 @@ struct layer_plan {
 
 [[nodiscard]] inline layer_plan plan_layers(const context& c, const volume_description& size,
                                             accumulate_route route) {
-    const std::uint64_t bytes = sum_bytes * size.width * size.height;
+    const std::uint64_t bytes = sum_bytes({size.width, size.height, 1});
     layer_plan plan;
     plan.layer = {size.width, size.height};
     plan.layers = static_cast<std::uint32_t>(
@@ -178,7 +178,6 @@ inline void carry_sums(context& c, const sum_drawing& d, std::uint32_t layers) {
     const std::uint32_t flags = (d.out.policy == padding::degenerate ? padded_flag : 0u) |
                                 (d.rectangles.points ? points_flag : 0u);
     const gl::handle frame = tiled ? c.objects.sums.tiles_frame : c.objects.sums.layers_frame;
-    const float zeros[4] = {};
     const auto& layer = d.layers.layer;
     const auto& target = d.layers.target;
     c.gl.program_uniform_4i(d.programs.draw, 0, static_cast<int>(layer.x),
@@ -188,7 +187,9 @@ inline void carry_sums(context& c, const sum_drawing& d, std::uint32_t layers) {
                             static_cast<int>(target.x), static_cast<int>(target.y));
     c.gl.bind_framebuffer(gl::draw_framebuffer, frame);
     set_pixel_raster(c.gl, target, true);
-    c.gl.clear_named_framebuffer(frame, gl::color, 0, zeros);
+    c.gl.clear_tex_sub_image(tiled ? c.objects.sums.tiles : c.objects.sums.layers, 0, 0, 0, 0,
+                             static_cast<int>(target.x), static_cast<int>(target.y),
+                             static_cast<int>(tiled ? 1 : count), gl::rg, gl::float32, nullptr);
     for (std::uint32_t done = 0; done < d.elements.count;) {
         const std::uint32_t now = std::min(d.rectangles.elements, d.elements.count - done);
         if (done != 0) {

@@ -87,7 +87,7 @@ inline constexpr token unpack_swap_bytes = 0x0CF0, unpack_lsb_first = 0x0CF1,
     pack_skip_images = 0x806B, pack_image_height = 0x806C;
 inline constexpr token texture_3d = 0x806F, texture_binding_3d = 0x806A, texture_wrap_r = 0x8072,
     max_3d_texture_size = 0x8073, max_image_units = 0x8F38, max_fragment_image_uniforms = 0x90CE, max_framebuffer_layers = 0x9317, r32i = 0x8235, r32f = 0x822E,
-    r16f = 0x822D, rg32f = 0x8230, red = 0x1903, int32 = 0x1404, float16 = 0x140B,
+    r16f = 0x822D, rg32f = 0x8230, red = 0x1903, rg = 0x8227, int32 = 0x1404, float16 = 0x140B,
     read_framebuffer = 0x8CA8, read_framebuffer_binding = 0x8CAA;
 inline constexpr token image_binding_name = 0x8F3A, image_binding_level = 0x8F3B,
     image_binding_layered = 0x8F3C, image_binding_layer = 0x8F3D, image_binding_access = 0x8F3E,
@@ -203,6 +203,7 @@ using debug_procedure = void(SKYBARK_OPENGL_CALL*)(token source, token type, han
     X(void, texture_sub_image_3d, "glTextureSubImage3D", (handle, int, int, int, int, int, int, int, token, token, const void*)) \
     X(void, copy_texture_sub_image_3d, "glCopyTextureSubImage3D", (handle, int, int, int, int, int, int, int, int)) \
     X(void, clear_tex_image, "glClearTexImage", (handle, int, token, token, const void*)) \
+    X(void, clear_tex_sub_image, "glClearTexSubImage", (handle, int, int, int, int, int, int, int, token, token, const void*)) \
     X(void, bind_image_texture, "glBindImageTexture", (handle, handle, int, boolean, int, token, token)) \
     X(void, get_texture_image, "glGetTextureImage", (handle, int, token, token, int, void*)) \
     X(void, get_texture_sub_image, "glGetTextureSubImage", (handle, int, int, int, int, int, int, int, token, token, int, void*)) \
