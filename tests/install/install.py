@@ -232,7 +232,10 @@ def single_header(project, folder):
     project.write("main.cpp", program)
     project.write("second.cpp", """#include "skybark_vulkan.hpp"
 #include "skybark_cpu.hpp"
-bool second() { return skybark::cpu::device().create_buffer(16) && skybark::vulkan::device::create({}); }
+bool second() {
+    return skybark::cpu::device().create_buffer(16) && skybark::vulkan::device::create({}) &&
+           !skybark::glsl::cloud_shadow.empty();
+}
 """)
     for name in ("main", "second"):
         project.run(["c++", "-std=c++20", *WARNINGS, "-c", f"{name}.cpp"])
