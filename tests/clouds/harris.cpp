@@ -174,6 +174,22 @@ TEST_P(harris_pass, is_the_recurrence) {
     });
 }
 
+TEST_P(harris_pass, has_no_history) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        const light_box box = box_of_four_metres();
+        const auto particles = in_line(box);
+        auto buffer = make_buffer<B, cloud_particle>(device, std::span(particles));
+        auto light = harris_light<B>::create(device, side, side, 5, {3.0f, 0.1f});
+        ASSERT_TRUE(buffer && light);
+        ASSERT_TRUE(light->relight(view<B>(*buffer), 5, box));
+        const std::vector<float> first = light->lights();
+        ASSERT_TRUE(light->relight(view<B>(*buffer), 3, box)); // fewer
+        ASSERT_TRUE(light->relight(view<B>(*buffer), 5, box));
+        EXPECT_EQ(light->lights(), first);
+    });
+}
+
 INSTANTIATE_TEST_SUITE_P(backends, harris_pass, testing::Values("cpu", "opengl", "vulkan"),
                          [](const auto& backend) { return std::string(backend.param); });
 

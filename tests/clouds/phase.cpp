@@ -113,6 +113,22 @@ TEST(phase, droplets_of_ten_micrometres_have_the_published_mean_cosine) {
     EXPECT_NEAR(phase_function::mie(10)->mean_cosine(), 0.864, 5e-4);
 }
 
+// Equations 4 to 7 of the same, worked out for diameters all over the fit.
+TEST(phase, droplets_have_the_published_fits_parameters) {
+    const double published[][5] = {{5, 0.9706780, 0.5083416, 17.0680985, 0.4478295},
+                                   {7, 0.9815816, 0.5319526, 19.3550927, 0.4676163},
+                                   {20, 0.9946100, 0.5937906, 27.1136937, 0.4981595},
+                                   {50, 0.9979524, 0.6250845, 32.3154278, 0.5076183}};
+    for (const auto& row : published) {
+        const auto phase = phase_function::mie(row[0]);
+        ASSERT_TRUE(phase);
+        EXPECT_NEAR(phase->g_henyey_greenstein(), row[1], 1e-7) << row[0];
+        EXPECT_NEAR(phase->g_draine(), row[2], 1e-7) << row[0];
+        EXPECT_NEAR(phase->alpha(), row[3], 1e-7) << row[0];
+        EXPECT_NEAR(phase->weight(), row[4], 1e-7) << row[0];
+    }
+}
+
 TEST(phase, forward_energy_leaves_nothing_that_scatters_backwards) {
     for (const auto& [name, phase] : all()) {
         const double f = phase.forward_energy();
