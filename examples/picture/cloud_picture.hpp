@@ -25,11 +25,11 @@ struct cloud_picture_options {
     std::uint32_t supersampling = 1; ///< samples a pixel in each direction
     std::optional<glm::vec3> eye;    ///< m; absent: where all of it is seen from
     std::optional<glm::vec3> target; ///< m; with an eye
-    float field_of_view = 40;        ///< degrees, vertical
+    float field_of_view = 40;        ///< degrees, vertical; 28 where the eye is absent
     double sun_azimuth = 120;        ///< degrees from north, clockwise
     double sun_elevation = 50;       ///< degrees
     double turbidity = 2.4;          ///< 2 very clear … 10 haze
-    float air = 2.5e-5f;             ///< 1/m; what is 1/air away is hidden by 63 %
+    float air = 4e-5f;               ///< 1/m; what is 1/air away is hidden by 63 %
     std::optional<float> exposure;   ///< display value 1 over radiance; absent: by the daylight
     bool ground = true;
 };
@@ -42,14 +42,15 @@ struct cloud_picture_options {
     const glm::vec3 half = glm::max((high - low) * 0.5f, glm::vec3(0.01f));
     const float across = std::max(half.x, half.z);
     const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
-    const float field = glm::radians(options.field_of_view);
-    const float reach = std::max(half.y, across / aspect) * 1.12f;
+    const float field = glm::radians(options.eye ? options.field_of_view : 28.0f);
+    const float reach = std::max(half.y, across / aspect) * 1.2f;
     const float distance = reach / std::tan(field * 0.5f) + across;
     // From below the base of what hangs over the ground at 0, else from its lower half.
     const float level = low.y > 0 ? std::max(0.5f * low.y, low.y - half.y) : low.y + 0.5f * half.y;
     const glm::vec3 eye = options.eye.value_or(
         glm::vec3(centre.x + 0.10f * distance, level, centre.z + 0.99f * distance));
-    const glm::vec3 target = options.target.value_or(centre);
+    // Above the middle of the picture, so that something of the land is seen.
+    const glm::vec3 target = options.target.value_or(centre - glm::vec3(0, 0.4f * half.y, 0));
     const glm::vec3 ahead = glm::normalize(target - eye);
     const glm::vec3 above = std::abs(ahead.y) > 0.999f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
     const float size = glm::length(half);
@@ -59,19 +60,23 @@ struct cloud_picture_options {
     scene.from_clip = glm::inverse(scene.to_clip);
     scene.to_shadow = glm::mat4(1);
     scene.camera = glm::vec4(eye, 0);
-    scene.sky =
-        daylight(direction_to_sun(options.sun_azimuth, options.sun_elevation), options.turbidity);
-    set_ambient(scene, glm::vec3(0.12f, 0.125f, 0.085f));
+    // The sun's light is that in the middle of the clouds.
+    scene.sky = daylight(direction_to_sun(options.sun_azimuth, options.sun_elevation),
+                         options.turbidity, std::max(0.0f, centre.y));
+    set_clear_day(scene.sky);
+    // From a base at 1 km, a sixth of the land's light is lost in a day's haze, and more than a
+    // third of the land that it sees lies in its own shadow.
+    set_level_ambient(scene, land_below{glm::vec3(0.12f, 0.125f, 0.085f), 0.6f, 0.16f});
     return scene;
 }
 
-/// The exposure of a picture in this light: less than in proportion, so that evenings are darker.
+/// The exposure of a picture in this light, for what is white and faces the sun: less than in
+/// proportion, so that evenings are darker.
 [[nodiscard]] inline float exposure_for(const kernels::scene_record& scene) {
-    const glm::vec3 up(0, 1, 0);
-    const glm::vec3 white = kernels::ambient_of(scene, up) +
-                            glm::vec3(scene.sky.sunlight) * std::max(scene.sky.to_sun.y, 0.0f);
+    const glm::vec3 white =
+        kernels::ambient_of(scene, glm::vec3(0, 1, 0)) * 0.5f + glm::vec3(scene.sky.sunlight);
     const float luminance = 0.2126f * white.x + 0.7152f * white.y + 0.0722f * white.z;
-    return 0.148f / std::pow(std::max(luminance, 0.01f), 0.35f);
+    return 0.205f / std::pow(std::max(luminance, 0.01f), 0.45f);
 }
 
 /// Draws clouds, picture after picture, into images that it makes once.
