@@ -1,4 +1,4 @@
-// Sums of gathered light, and what they say (METHODS of the estimator: skybark/gather/final_gather.hpp).
+// Sums of gathered light, and what they say (the estimator: skybark/gather/final_gather.hpp).
 #include "records.glsl"
 
 float luminance_of(vec4 light)

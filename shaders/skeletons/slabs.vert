@@ -1,9 +1,10 @@
 #version 450
 // accumulate, drawn: every element has kernel_slabs() rectangles of six vertices each, made from
 // the vertex's number alone. Those that the element does not have are degenerate: all six vertices
-// are equal, so that nothing after this stage touches them, and nothing branches on how many there
-// are (Shimada et al. 2008, section 4.1). With bit 3 of the flags there is a geometry stage, and
-// this one only hands on the number of a point.
+// are equal, so that nothing after this stage touches them, and how many vertices are drawn depends
+// on the number of elements alone (Shimada et al. 2008, section 4.1). How many slabs an element has
+// is asked here, in one place, because a kernel is asked for none that it does not have. With bit 3
+// of the flags there is a geometry stage, and this one only hands on the number of a point.
 #include KERNEL
 #include "slab_raster.glsl"
 layout(location = 0) flat out ivec2 skybark_cell; // the element and its layer, or the point

@@ -37,7 +37,7 @@ TEST(attenuation_tables, profiles) {
 }
 
 TEST(attenuation_tables, cuts) {
-    // METHODS of the paper's product: a depth of 10 in n parts, f = 0.1074. In double precision
+    // The paper's product: a depth of 10 in n parts, f = 0.1074. In double precision
     // (e^−10/n + f 10/n)^n.
     cpu::device device;
     std::printf("parts  product      exact        continuum\n");

@@ -76,7 +76,7 @@ TEST_P(attenuation, is_the_exact_sum_at_cell_centres) {
                         }
                     }
                 }
-                // Asked for: 1e-5 · max(1, τ).
+                // The promise: 1e-5 · max(1, τ).
                 EXPECT_LE(worst, 1e-5) << (profile == attenuation_profile::erf ? "erf" : "step");
             }
         }
@@ -402,8 +402,8 @@ TEST(attenuation_accuracy, volumes_larger_than_a_binding) {
     });
 }
 
-TEST(attenuation_accuracy, product_is_the_documents) {
-    // One particle: G on its axis is e^−τ + a τ f, amplifying where f is sharp (METHODS: a thick
+TEST(attenuation_accuracy, product_is_the_papers) {
+    // One particle: G on its axis is e^−τ + a τ f, amplifying where f is sharp (a thick
     // particle can amplify light).
     cpu::device device;
     cloud_particle p;

@@ -241,7 +241,7 @@ TEST(directions, of_a_replicate_err_by_the_power_of_three_quarters) {
     }
 }
 
-/// All eight together: the issue is closed forms at 1,024 and 4,096 axes. Of independent replicates
+/// All eight together, against closed forms at 1,024 and 4,096 axes. Of independent replicates
 /// the first would be 0.0041.
 TEST(directions, of_all_replicates_err_little) {
     double all = 0;

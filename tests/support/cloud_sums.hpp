@@ -198,7 +198,7 @@ inline transmittance_errors errors_of(const std::vector<float>& values, const li
     return found;
 }
 
-/// The cloud of the issue: radii 4-8 % of the box's side of 2 m, mean optical depth about 7.
+/// A cloud of 4,000 blobs: radii 4-8 % of the box's side of 2 m, mean optical depth about 7.
 inline std::vector<cloud_particle> blobs(unsigned seed) {
     return ball(4000, 0.08f, 0.16f, 0.91f, seed);
 }

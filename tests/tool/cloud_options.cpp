@@ -70,7 +70,7 @@ TEST(cloud_options, are_what_the_manual_says) {
     EXPECT_EQ(options.attenuation.profile, attenuation_profile::erf);
     EXPECT_EQ(options.attenuation.format, skybark::volume_format::float32);
     EXPECT_EQ(options.attenuation.sigmas, 3);
-    // METHODS: the mean cosine of droplets of 10 µm is 0.864.
+    // The mean cosine of droplets 10 µm across is 0.864 (Jendersie and d'Eon).
     EXPECT_NEAR(options.phase.mean_cosine(), 0.864, 1e-3);
     EXPECT_EQ(options.extinction, 1);
     EXPECT_EQ(options.albedo, 1);

@@ -333,7 +333,7 @@ TEST(sway, cantilever_is_off_by_half_the_square_of_the_segments) {
             auto s = loaded(b, model, alpha);
             const double ratio = s.tip().x / (alpha * b.length / 3);
             EXPECT_NEAR(ratio, 1, 1 / (2.0 * n * n) + 1e-5) << n;
-            EXPECT_GT(std::abs(ratio - 1), 1 / (2.2 * n * n)) << n; // that is what METHODS says
+            EXPECT_GT(std::abs(ratio - 1), 1 / (2.2 * n * n)) << n; // off by 1 / 2n²
         }
     }
 }

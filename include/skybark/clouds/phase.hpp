@@ -2,9 +2,9 @@
 // Phase functions of clouds, on the host in double; `parameters()` is what a kernel carries and
 // shared/phase.hpp evaluates.
 //
-//     auto droplets = clouds::phase_function::mie(10);                  // 10 µm
+//     auto droplets = clouds::phase_function::mie(10);                  // 10 µm across
 //     kernel.phase = droplets->parameters();                            // shared::phase_value
-//     float f = float(albedo * droplets->forward_energy());             // the continuum's light
+//     options.forward = float(droplets->forward_energy());              // attenuation_options'
 //
 // All are normalised to 1 over the sphere and take the cosine of the scattering angle.
 
@@ -36,16 +36,18 @@ class phase_function {
         return {g_henyey_greenstein, g_draine, alpha, weight};
     }
 
-    /// Water droplets of a diameter in µm, averaged over the visible: the fit to Mie's theory of
-    /// Jendersie and d'Eon, "An Approximate Mie Scattering Function for Fog and Cloud Rendering",
-    /// SIGGRAPH Talks 2023, equations 4–7. Errors: bad_input outside of 5…50 µm.
-    [[nodiscard]] static result<phase_function> mie(double diameter) {
-        if (!(diameter >= 5 && diameter <= 50)) {
-            return fail(error_code::bad_input,
-                        std::string("The fit to Mie's theory is for droplets of 5 to 50 µm, not ") +
-                            std::to_string(diameter) + " µm.");
+    /// Water droplets `diameter_um` µm across, averaged over the visible: the fit to Mie's theory
+    /// of Jendersie and d'Eon, "An Approximate Mie Scattering Function for Fog and Cloud
+    /// Rendering", SIGGRAPH Talks 2023, equations 4–7. Clouds are often told by the radius:
+    /// droplets of an effective radius of 10 µm are mie(20). Errors: bad_input outside of 5…50 µm.
+    [[nodiscard]] static result<phase_function> mie(double diameter_um) {
+        if (!(diameter_um >= 5 && diameter_um <= 50)) {
+            return fail(
+                error_code::bad_input,
+                std::string("The fit to Mie's theory is for droplets 5 to 50 µm across, not ") +
+                    std::to_string(diameter_um) + " µm.");
         }
-        const double d = diameter;
+        const double d = diameter_um;
         return phase_function{std::exp(-0.0990567 / (d - 1.67154)),
                               std::exp(-2.20679 / (d + 3.91029) - 0.428934),
                               std::exp(3.62489 - 8.29288 / (d + 5.52825)),

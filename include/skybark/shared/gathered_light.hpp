@@ -1,13 +1,13 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d2b419314b6acbdec81961b1eeb91b509bc80d8c7dc7bf012b8447b23410ac63
+// sha256 d5f6073074174ee906554b54aa58484933a2d646318903da133c10c20b44e752
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
 
 namespace skybark::shared {
 
-// Sums of gathered light, and what they say (METHODS of the estimator: skybark/gather/final_gather.hpp).
+// Sums of gathered light, and what they say (the estimator: skybark/gather/final_gather.hpp).
 
 inline float luminance_of(vec4 light)
 {

@@ -4,7 +4,7 @@
 // Everything here is linear in the number of segments and free of recursion, because a scan of a
 // stand has millions of segments and a vine is one chain of them.
 // Frames: the smallest rotation from each segment to its child, applied from the root outwards,
-// which is parallel transport along the tree (METHODS: Wang et al. 2008 for why that is wanted).
+// which is parallel transport along the tree (Wang et al. 2008 say why that is wanted).
 
 #include <skybark/trees/skeleton.hpp>
 
