@@ -9,6 +9,7 @@
 #include <skybark/clouds/cloud_density.hpp>
 #include <skybark/clouds/cumulus.hpp>
 
+#include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
 #include <numbers>
 #include <random>
@@ -153,7 +154,7 @@ ray_hit hit(const cloud_particle& p, dvec3 eye, dvec3 direction) {
     return {glm::dot(c, c) - ahead * ahead, ahead};
 }
 
-/// tau exp(-rho²/2σ²), what lies before the eye of it, and nothing beyond the radius (METHODS: the
+/// tau exp(-rho²/2σ²), what lies before the eye of it, and nothing beyond the radius (the
 /// blob along a ray).
 double depth_along(const cloud_particle& p, const ray_hit& h, double sigmas = 3) {
     const double r = p.radius;
@@ -181,13 +182,15 @@ TEST_P(drawing, a_puff_has_the_profile_of_a_gaussian) {
         const vec3 at(2, 1, 0);
         on.set(scene_at(eye, at));
         for (const float tau : {0.01f, 1.0f, 8.0f}) {
-            for (const float forward : {0.0f, 0.6f}) {
+            for (const auto& [forward, sigmas] :
+                 {std::pair{0.0f, 3.0f}, std::pair{0.6f, 3.0f}, std::pair{0.6f, 2.0f}}) {
                 cloud_particle p;
                 p.radius = 25;
                 p.optical_depth = tau;
                 p.albedo = 0.9f;
                 cloud_lighting lighting = plain_light(grid_at({-2, -2, -2}));
                 lighting.forward = forward;
+                lighting.sigmas = sigmas;
                 const auto pixels = on.draw({&p, 1}, {lighting, &lit, nullptr, nullptr, {}});
                 int covered = 0;
                 for (int y = 0; y < side; ++y) {
@@ -197,10 +200,11 @@ TEST_P(drawing, a_puff_has_the_profile_of_a_gaussian) {
                             continue;
                         }
                         const double kept = 1 - 0.9 * double{forward};
-                        const double depth = kept * depth_along(p, h);
+                        const double depth = kept * depth_along(p, h, double{sigmas});
                         const double alpha = 1 - std::exp(-depth);
                         const double light = 0.9 / kept * alpha / 4; // a P pi sunlight
-                        const double slope = depth * std::exp(-depth) * std::sqrt(h.rho2) * 9 / 625;
+                        const double slope = depth * std::exp(-depth) * std::sqrt(h.rho2) *
+                                             double{sigmas * sigmas} / 625;
                         const vec4 pixel = pixels[static_cast<std::size_t>(y * side + x)];
                         // What is fainter than 1/4096 is left out.
                         const double tolerance = alpha < 2.5e-4 ? 2.5e-4 : 1e-5 + 0.0032 * slope;
@@ -525,8 +529,8 @@ TEST_P(drawing, octaves_add_up) {
 
 /// A column of depth 12 under a white sky and over black ground, then the other way round: the
 /// means of two streams without absorption, whose net flux is T = 1 / (1 + 3/4 (1 − g) tau).
-TEST_P(drawing, light_of_the_sky_comes_by_two_streams) {
-    support::with_device(GetParam(), [](auto& device) {
+void expect_two_streams(const std::string& backend, float forward_part) {
+    support::with_device(backend, [forward_part](auto& device) {
         using B = std::remove_reference_t<decltype(device)>;
         stage<B> on(device);
         // tau grows downwards: 12 at the bottom of 16 layers of 4 m, half a layer's worth less at
@@ -536,16 +540,22 @@ TEST_P(drawing, light_of_the_sky_comes_by_two_streams) {
             const double layer = static_cast<double>(i / 4 % 18);
             voxels[i] = static_cast<float>(std::clamp((16.5 - layer) / 16 * 12, 0.0, 12.0));
         }
-        const auto above = make_volume(device, {4, 18, 4}, voxels);
         const auto sun = clear_volume(device, 50); // no sun
         light_box box;
         box.grid = grid_at({-100, -36, -100}, 50);
         box.grid.row_y = vec4(0, 0.25f, 0, 0);
         const auto phase = phase_function::henyey_greenstein(0.8);
-        attenuation_options extinction;
-        extinction.light = attenuation_light::extinction;
-        cloud_lighting lighting = single_scattering(extinction, box, phase);
-        add_sky(lighting, extinction, box, phase);
+        // By its extinction, and by what the continuum has of it.
+        attenuation_options column;
+        column.light =
+            forward_part == 0 ? attenuation_light::extinction : attenuation_light::continuum;
+        column.forward = forward_part;
+        for (float& v : voxels) {
+            v *= 1 - forward_part;
+        }
+        const auto above = make_volume(device, {4, 18, 4}, voxels);
+        cloud_lighting lighting = single_scattering(column, box, phase);
+        add_sky(lighting, column, box, phase);
         lighting.forward_point = 0;
         const vec3 eye(0, 0, 3000);
         const double gamma = 0.75 * 0.2;
@@ -582,6 +592,12 @@ TEST_P(drawing, light_of_the_sky_comes_by_two_streams) {
             }
         }
     });
+}
+
+TEST_P(drawing, light_of_the_sky_comes_by_two_streams) {
+    for (const float forward_part : {0.0f, 0.64f}) {
+        expect_two_streams(GetParam(), forward_part);
+    }
 }
 
 /// A grid of one density: alpha is that of its length along the ray, however long; its light is
@@ -643,6 +659,216 @@ TEST_P(drawing, a_grid_is_marched) {
                     }
                 }
             }
+        }
+    });
+}
+
+/// Where the light that leaves a Gaussian towards the eye was scattered: 1/tau - 1/(e^tau - 1) of
+/// its depth lies before that place, on average, which is documented to 0.1 sigma.
+TEST_P(drawing, what_is_seen_was_scattered_in_front) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        stage<B> on(device);
+        // −ln light grows by 1 in 20 m away from the eye, which is at z = 100.
+        std::vector<float> voxels(4 * 4 * 64);
+        for (std::size_t i = 0; i < voxels.size(); ++i) {
+            voxels[i] = 4 - (static_cast<float>(i / 16) + 0.5f - 32) / 20;
+        }
+        const auto ramp = make_volume(device, {4, 4, 64}, voxels);
+        light_grid grid = grid_at({-32, -32, -32});
+        grid.row_x = vec4(1 / 16.0f, 0, 0, 0);
+        grid.row_y = vec4(0, 1 / 16.0f, 0, 0);
+        const vec3 eye(0, 0, 100);
+        on.set(scene_at(eye, {0, 0, 0}));
+        for (const float tau : {0.3f, 3.0f, 15.0f}) {
+            cloud_particle p;
+            p.radius = 30;
+            p.optical_depth = tau;
+            const auto pixels = on.draw({&p, 1}, {plain_light(grid), &ramp, nullptr, nullptr, {}});
+            for (int x = 0; x < side; ++x) {
+                const int y = side / 2;
+                const dvec3 to = direction_of(x, y, eye, {0, 0, 0});
+                const ray_hit h = hit(p, dvec3(eye), to);
+                const double depth = depth_along(p, h);
+                if (depth < 0.05) {
+                    continue;
+                }
+                // The quantile of the Gaussian, by halving.
+                const double before = 1 / depth - 1 / std::expm1(depth);
+                double low = -8;
+                double high = 8;
+                for (int i = 0; i < 60; ++i) {
+                    const double middle = (low + high) / 2;
+                    (0.5 * std::erfc(middle / std::sqrt(2.0)) > before ? low : high) = middle;
+                }
+                const double z = 100 + to.z * (h.ahead - low * 10);
+                const double light = std::exp(-(4 - z / 20)) / 4;
+                const vec4 pixel = pixels[static_cast<std::size_t>(y * side + x)];
+                // 0.1 sigma of 10 m; filtering and corners round to 2e-3.
+                ASSERT_NEAR(std::log(double{pixel.r / pixel.a} / light), 0, 0.05 + 2e-3)
+                    << x << ' ' << tau;
+            }
+        }
+    });
+}
+
+/// A volume of fluence that grows along x, in a grid of its own: from −30 to 30 m, 2.5 + x / 20.
+template <volume_backend B>
+typename B::volume fluence_ramp(B& device) {
+    std::vector<float> voxels(32 * 4 * 4);
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+        voxels[i] = 2.5f + (2 * (static_cast<float>(i % 32) + 0.5f) - 32) / 20;
+    }
+    return make_volume(device, {32, 4, 4}, voxels);
+}
+light_grid fluence_grid() {
+    light_grid grid = grid_at({-32, -32, -32}, 2);
+    grid.row_y = vec4(0, 1 / 16.0f, 0, 0);
+    grid.row_z = vec4(0, 0, 1 / 16.0f, 0);
+    return grid;
+}
+
+/// Of light that was scattered before, a (1 − f) / (1 − a f) is scattered again, the same to all
+/// sides; of the sun's, a / (1 − a f).
+TEST_P(drawing, what_was_scattered_is_scattered_again) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        stage<B> on(device);
+        const auto lit = clear_volume(device, 1);
+        const auto ramp = fluence_ramp(device);
+        const vec3 eye(0, 0, 100);
+        on.set(scene_at(eye, {0, 0, 0}));
+        cloud_particle p;
+        p.radius = 25;
+        p.optical_depth = 2;
+        p.albedo = 0.7f;
+        cloud_lighting lighting = plain_light(grid_at({-2, -2, -2}));
+        lighting.forward = 0.6f;
+        lighting.forward_point = 0;
+        add_diffuse(lighting, fluence_grid());
+        const double kept = 1 - 0.7 * 0.6;
+        const auto pixels = on.draw({&p, 1}, {lighting, &lit, nullptr, &ramp, {}});
+        for (int y = 0; y < side; ++y) {
+            for (int x = 0; x < side; ++x) {
+                const dvec3 to = direction_of(x, y, eye, {0, 0, 0});
+                const ray_hit h = hit(p, dvec3(eye), to);
+                const double alpha = 1 - std::exp(-kept * depth_along(p, h));
+                if (alpha < 0.01) {
+                    continue;
+                }
+                const double fluence = 2.5 + to.x * h.ahead / 20;
+                const double light = (0.7 / kept * std::exp(-1.0) + 0.7 * 0.4 / kept * fluence) / 4;
+                const vec4 pixel = pixels[static_cast<std::size_t>(y * side + x)];
+                ASSERT_NEAR(pixel.b / alpha / (3 * light), 1, 2e-3) << x << ' ' << y;
+            }
+        }
+    });
+}
+
+/// Own light dimmed by e^(−air · way), and what the sky has in that direction in its place.
+TEST_P(drawing, air_lies_before_the_cloud) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        stage<B> on(device);
+        const auto lit = clear_volume(device, 1);
+        const vec3 eye(0, 0, 100);
+        const kernels::scene_record scene = scene_at(eye, {0, 0, 0}, {0.3f, 1, 0.2f});
+        on.set(scene);
+        const vec3 sky = shared::sky_radiance(scene.sky, vec3(0, 0, -1));
+        ASSERT_GT(sky.r, 0.01f);
+        cloud_lighting lighting = plain_light(grid_at({-2, -2, -2}));
+        lighting.forward_point = 0;
+        lighting.air = 0.007f;
+        const std::size_t middle = side / 2 * side + side / 2;
+        const auto expect = [&](const vec4& pixel, double alpha, double way) {
+            const double seen = std::exp(-0.007 * way);
+            const double own = std::exp(-1.0) / 4;
+            for (int c = 0; c < 3; ++c) {
+                // Half a pixel beside the axis, where the sky is 0.3 % darker.
+                const double all = (c + 1) * own * seen + double{sky[c]} * (1 - seen);
+                EXPECT_NEAR(double{pixel[c]} / alpha / all, 1, 5e-3) << c;
+            }
+        };
+        cloud_particle p;
+        p.radius = 25;
+        p.optical_depth = 2;
+        const auto pixels = on.draw({&p, 1}, {lighting, &lit, nullptr, nullptr, {}});
+        expect(pixels[middle], 1 - std::exp(-2.0), 100);
+        // A grid so dense that its first step is all that is seen: of 20 / 8 / 2 m at most.
+        const std::vector<float> ones(8 * 8 * 8, 1.0f);
+        const auto density = make_volume(device, {8, 8, 8}, ones);
+        density_box where;
+        where.low = vec3(-20, -10, -15);
+        where.high = vec3(20, 10, 15);
+        where.extinction = 100;
+        auto rays = cloud_density<B>::create(device);
+        ASSERT_TRUE(rays);
+        ASSERT_TRUE(run(device, [&](auto& r) {
+            on.clear(r, vec4(0));
+            rays->record(r, density, where, on.scene(), {lighting, &lit, nullptr, nullptr, {}},
+                         on.color(), on.depth());
+        }));
+        expect(on.pixels()[middle], 1, 85.6);
+    });
+}
+
+/// A density that grows along x, albedo, forward part and all: ∫ by the midpoints of fine steps.
+TEST_P(drawing, a_grid_scatters_what_was_scattered) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        stage<B> on(device);
+        std::vector<float> voxels(16 * 4 * 4);
+        for (std::size_t i = 0; i < voxels.size(); ++i) {
+            voxels[i] = (static_cast<float>(i % 16) + 0.5f) / 16;
+        }
+        const auto density = make_volume(device, {16, 4, 4}, voxels);
+        density_box where;
+        where.low = vec3(-20, -10, -15);
+        where.high = vec3(20, 10, 15);
+        where.extinction = 0.15f;
+        where.albedo = 0.7f;
+        const auto lit = clear_volume(device, 1);
+        const auto fluence = clear_volume(device, 2.5f);
+        auto rays = cloud_density<B>::create(device);
+        ASSERT_TRUE(rays);
+        cloud_lighting lighting = plain_light(grid_at({-2, -2, -2}));
+        lighting.forward = 0.6f;
+        add_diffuse(lighting, grid_at({-2, -2, -2}));
+        const double kept = 1 - 0.7 * 0.6;
+        const double light = (0.7 / kept * std::exp(-1.0) + 0.7 * 0.4 / kept * 2.5) / 4;
+        for (const vec3 eye : {vec3(80, 10, 15), vec3(-60, 5, 40)}) {
+            on.set(scene_at(eye, {0, 0, 0}));
+            ASSERT_TRUE(run(device, [&](auto& r) {
+                on.clear(r, vec4(0));
+                rays->record(r, density, where, on.scene(), {lighting, &lit, nullptr, &fluence, {}},
+                             on.color(), on.depth());
+            }));
+            const auto pixels = on.pixels();
+            int covered = 0;
+            for (int y = 0; y < side; y += 3) {
+                for (int x = 0; x < side; x += 3) {
+                    const dvec3 to = direction_of(x, y, eye, {0, 0, 0});
+                    double depth = 0;
+                    const int steps = 4000;
+                    const double length = 140.0 / steps;
+                    for (int i = 0; i < steps; ++i) {
+                        const dvec3 at = dvec3(eye) + to * ((i + 0.5) * length);
+                        if (glm::all(glm::lessThan(glm::abs(at), dvec3(20, 10, 15)))) {
+                            // Level in the outer half of the outermost voxels.
+                            depth +=
+                                length * 0.15 * std::clamp((at.x + 20) / 40, 0.5 / 16, 15.5 / 16);
+                        }
+                    }
+                    const double alpha = 1 - std::exp(-kept * depth);
+                    const vec4 pixel = pixels[static_cast<std::size_t>(y * side + x)];
+                    // Rays end when 1/2048 is left; the quadrature's ends are 35 mm, of 0.15 1/m;
+                    // a step of 1.25 m meets a bend of 0.15 / 40 in slope to 1e-3.
+                    ASSERT_NEAR(pixel.a, alpha, 4e-3) << x << ' ' << y;
+                    ASSERT_NEAR(pixel.g, 2 * light * double{pixel.a}, 1e-4) << x << ' ' << y;
+                    covered += alpha > 0.3 ? 1 : 0;
+                }
+            }
+            EXPECT_GT(covered, 30);
         }
     });
 }
@@ -735,6 +961,24 @@ TEST(cloud_billboards, frames_allocate_nothing) {
         ASSERT_TRUE(device.submit(*recorder));
     }
     EXPECT_EQ(allocations[1], 0u);
+}
+
+TEST(cloud_billboards, know_of_the_light_what_the_volume_has) {
+    const auto phase = phase_function::henyey_greenstein(0.5);
+    attenuation_options options;
+    options.sigmas = 2;
+    options.forward = 0.25f;
+    light_box box;
+    box.grid = grid_at({1, 2, 3});
+    for (const auto light : {attenuation_light::extinction, attenuation_light::continuum,
+                             attenuation_light::product}) {
+        options.light = light;
+        const cloud_lighting lighting = single_scattering(options, box, phase);
+        EXPECT_EQ(lighting.forward, light == attenuation_light::continuum ? 0.25f : 0.0f);
+        EXPECT_EQ(lighting.sigmas, 2);
+        EXPECT_EQ(lighting.sun_grid.anchor, box.grid.anchor);
+        EXPECT_EQ(lighting.phase, phase.parameters());
+    }
 }
 
 TEST(cloud_billboards, more_than_a_device_binds_is_refused) {
