@@ -66,7 +66,9 @@ struct attenuation_options {
     accumulate_route route = accumulate_route::direct;
     std::uint64_t list_bytes = std::uint64_t{64} << 20; ///< more rectangles go through in chunks
 
-    /// What all volumes together may take.
+    /// What all volumes together may take. Beside it: `list_bytes` for a list, and for drawn routes
+    /// about 8 bytes a voxel (layers) or 16 (tiles), in textures that the device keeps for all its
+    /// volumes and that are as large as the largest of them.
     std::uint64_t most_bytes = std::uint64_t{4} << 30;
 };
 

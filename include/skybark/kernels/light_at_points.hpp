@@ -22,8 +22,8 @@ struct light_at_points {
     static constexpr std::uint32_t volumes = 2;
 
     light_grid grid; ///< of the attenuation
-    /// 0 and 1: light is e^−attenuation. More: Wrenninge's octaves without their phase function, their
-    /// mean by weight: Σ wⁱ e^(−bⁱ attenuation) / Σ wⁱ.
+    /// 0 and 1: light is e^−attenuation. More: Wrenninge's octaves without their phase function,
+    /// their mean by weight: Σ wⁱ e^(−bⁱ attenuation) / Σ wⁱ.
     std::uint32_t octaves = 1;
     float octave_weight = 0.5f;      ///< w
     float octave_attenuation = 0.5f; ///< b
