@@ -3,6 +3,7 @@
 
 #include "cloud_job.hpp"
 
+#include <io/text_input.hpp>
 #include <io/write_png.hpp>
 #include <picture/cloud_picture.hpp>
 #include <skybark/clouds/attenuation_volume.hpp>
@@ -47,6 +48,11 @@ class cloud_maker {
 
     // ---- The cloud, and its light --------------------------------------------------------------
 
+    /// What the library or a device says of the cloud, with the name of the file that it came from.
+    [[nodiscard]] failure about_input(const error& e) const {
+        return fail(e.code, io::in_quotes(job_.input) + ": " + e.message);
+    }
+
     [[nodiscard]] result<void> upload() {
         job_.time.begin("build");
         if (!job_.is_grid()) {
@@ -61,7 +67,7 @@ class cloud_maker {
         const glm::uvec3 voxels = job_.grid.voxels;
         auto made = device_.create_volume({voxels.x, voxels.y, voxels.z, volume_format::float32});
         if (!made) {
-            return failure(made.error());
+            return about_input(made.error());
         }
         density_ = std::move(*made);
         return device_.upload(*density_, std::as_bytes(std::span(job_.grid.density)));
@@ -96,7 +102,7 @@ class cloud_maker {
         auto box = job_.is_grid() ? clouds::fit_light_box(bounds, towards, voxels)
                                   : clouds::fit_light_box(job_.particles, towards, voxels);
         if (!box) {
-            return failure(box.error());
+            return about_input(box.error());
         }
         return lit_volume{std::move(*volume), *box};
     }

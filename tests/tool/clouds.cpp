@@ -484,7 +484,7 @@ TEST_F(tool_clouds, draws_no_cloud_where_floats_cannot_tell_its_places) {
     write_file(in_folder("far.csv"), header + "1e9,0,0,1e-6,2,1\n");
     std::filesystem::remove(folder / "light.csv");
     std::filesystem::remove(folder / "a.png");
-    expect_failed(probe, {"1e-12 of that distance"});
+    expect_failed(probe, {"far.csv", "1e-12 of that distance"});
 }
 
 TEST_F(tool_clouds, says_what_is_wrong_with_points) {
