@@ -1,7 +1,8 @@
 #version 450
 // accumulate: a group adds some slabs of one element, so that what the kernel knows of the element
-// is the same for all its invocations. Of the group's 16, header.z's lower half stand beside each
-// other in a slab and go through its columns together; the others are at the next slabs.
+// is the same for all its invocations: 16 of them, or as many as a constant says. Of these, header.z's
+// lower half stand beside each other in a slab and go through its columns together; the others are
+// at the next slabs.
 //
 // An element has `parts` groups in a row, for loops that are too long for one: as many as header.z's
 // upper half says share a slab's columns, times kernel_slabs() over the upper half of header.w,
@@ -12,7 +13,11 @@
 // length on are left out; bit 1: a slab's lines of memory are read before they are added to; bits 2
 // to 15: zero. The volume of int32 is an image at SKYBARK_SUMS_BINDING.
 #define SKYBARK_COMPUTE_STAGE
+#ifdef SKYBARK_VULKAN
+layout(local_size_x_id = 0) in;
+#else
 layout(local_size_x = 16) in;
+#endif
 #include KERNEL
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 layout(binding = SKYBARK_SUMS_BINDING, r32i) uniform iimage3D skybark_sums;
@@ -73,7 +78,7 @@ void main() {
     uint first = part / sharing * each;
     uint last = min(first + each, kernel_slab_count(i));
     ivec3 size = imageSize(skybark_sums);
-    for (uint s = first + slot; s < last; s += 16u / lanes) {
+    for (uint s = first + slot; s < last; s += gl_WorkGroupSize.x / lanes) {
         skybark_add(i, s, int(column), int(lanes * sharing), size);
     }
 }

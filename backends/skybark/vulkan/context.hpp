@@ -212,6 +212,9 @@ class context {
                    ? !on_cpu()
                    : description.expand_by == expansion::per_vertices;
     }
+    /// Invocations in a group of an accumulation: as many as a GPU runs in step. On a CPU more
+    /// would be idle, at the end of an element's slabs.
+    [[nodiscard]] std::uint32_t slab_group() const noexcept { return per_vertices() ? 32 : 16; }
 
     /// Whether images of this format can be sampled with a linear filter.
     [[nodiscard]] bool filters(VkFormat format) const {

@@ -296,6 +296,11 @@ class pipeline_cache {
         auto info =
             make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
         info.stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, *module);
+        // Only accumulate.comp has a constant.
+        const std::uint32_t group = c.slab_group();
+        const VkSpecializationMapEntry entry{0, 0, sizeof group};
+        const VkSpecializationInfo constants{1, &entry, sizeof group, &group};
+        info.stage.pSpecializationInfo = &constants;
         info.layout = (*l)->pipeline;
         VkPipeline pipeline = VK_NULL_HANDLE;
         auto done = rejected(c.call.create_compute_pipelines(c.device(), VK_NULL_HANDLE, 1, &info,

@@ -527,7 +527,7 @@ class recorder : private detail::stream {
         p.flags = side_by_side ? 0 : detail::flag_fetch;
         const auto turns = [&] {
             const std::uint64_t columns = groups_of(size.width, p.lanes * p.sharing);
-            return groups_of(p.each, 16 / p.lanes) *
+            return groups_of(p.each, state_->shared.slab_group() / p.lanes) *
                    (1 + (columns + 1) * (std::uint64_t{size.height} + 1));
         };
         while (state_->shared.on_cpu() && turns() > most_loop_turns) {

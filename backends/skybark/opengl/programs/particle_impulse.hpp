@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 7febff4f72322ef6cb68798b78f20b657dd64d3cdcebce3132e66c1de38628c2
+// sha256 ad771ca6705e5646a09bddd0400dbcf1d830153b438138928185d406bf833c06
 #pragma once
 
 #include <skybark/kernels/particle_impulse.hpp>
@@ -13,7 +13,11 @@ struct program<kernels::particle_impulse> {
     static constexpr std::string_view accumulate_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
+#ifdef SKYBARK_VULKAN
+layout(local_size_x_id = 0) in;
+#else
 layout(local_size_x = 16) in;
+#endif
 struct surface_vertex {
 vec3 position;
 float u;
@@ -374,11 +378,11 @@ uint column = part % sharing * lanes + gl_LocalInvocationID.x - slot * lanes;
 uint first = part / sharing * each;
 uint last = min(first + each, kernel_slab_count(i));
 ivec3 size = imageSize(skybark_sums);
-for (uint s = first + slot; s < last; s += 16u / lanes) {
+for (uint s = first + slot; s < last; s += gl_WorkGroupSize.x / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 10640};
+)glsl", 10722};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {

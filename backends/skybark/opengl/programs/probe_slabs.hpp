@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 35eb3c3c77f769141f6428c50ec1f24a7cde05fedd704aeaa43b045b65a0b9a9
+// sha256 17d93dfffd0dc535429f123cfd4623b27ad92537cf6626fb3a3ac0c858e8e54b
 #pragma once
 
 #include <skybark/kernels/probe_slabs.hpp>
@@ -13,7 +13,11 @@ struct program<kernels::probe_slabs> {
     static constexpr std::string_view accumulate_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
+#ifdef SKYBARK_VULKAN
+layout(local_size_x_id = 0) in;
+#else
 layout(local_size_x = 16) in;
+#endif
 #define KERNEL_PARAMETERS uint most; int per_x; int per_z; int factor;
 #ifdef SKYBARK_VULKAN
 layout(push_constant) uniform skybark_block {
@@ -132,11 +136,11 @@ uint column = part % sharing * lanes + gl_LocalInvocationID.x - slot * lanes;
 uint first = part / sharing * each;
 uint last = min(first + each, kernel_slab_count(i));
 ivec3 size = imageSize(skybark_sums);
-for (uint s = first + slot; s < last; s += 16u / lanes) {
+for (uint s = first + slot; s < last; s += gl_WorkGroupSize.x / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 4449};
+)glsl", 4531};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define KERNEL_PARAMETERS uint most; int per_x; int per_z; int factor;

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 c6e9920e82ccb2131d19a3b424a48108267912fbac2a65cec0371cc300dc8fd3
+// sha256 4f0ab550c66685a92826e8b764fe1e4775ff918491d013c3eb21e8e59ca81239
 #pragma once
 
 #include <skybark/kernels/shadow_polygon.hpp>
@@ -13,7 +13,11 @@ struct program<kernels::shadow_polygon> {
     static constexpr std::string_view accumulate_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
+#ifdef SKYBARK_VULKAN
+layout(local_size_x_id = 0) in;
+#else
 layout(local_size_x = 16) in;
+#endif
 struct surface_vertex {
 vec3 position;
 float u;
@@ -370,11 +374,11 @@ uint column = part % sharing * lanes + gl_LocalInvocationID.x - slot * lanes;
 uint first = part / sharing * each;
 uint last = min(first + each, kernel_slab_count(i));
 ivec3 size = imageSize(skybark_sums);
-for (uint s = first + slot; s < last; s += 16u / lanes) {
+for (uint s = first + slot; s < last; s += gl_WorkGroupSize.x / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 10481};
+)glsl", 10563};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {

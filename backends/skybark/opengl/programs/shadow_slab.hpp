@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 75af9d38edb64b5209b4e3bebddd73d4023a5569167d1a93342c98c01d18dcba
+// sha256 27b391d4d3163b3ddfaa6a008d92da1397d7f875ce9d3b35f7c2261b4fe40f03
 #pragma once
 
 #include <skybark/kernels/shadow_slab.hpp>
@@ -389,7 +389,11 @@ skybark_run(skybark_header.x + element, strip, first, count);
     static constexpr std::string_view accumulate_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
+#ifdef SKYBARK_VULKAN
+layout(local_size_x_id = 0) in;
+#else
 layout(local_size_x = 16) in;
+#endif
 struct surface_vertex {
 vec3 position;
 float u;
@@ -759,11 +763,11 @@ uint column = part % sharing * lanes + gl_LocalInvocationID.x - slot * lanes;
 uint first = part / sharing * each;
 uint last = min(first + each, kernel_slab_count(i));
 ivec3 size = imageSize(skybark_sums);
-for (uint s = first + slot; s < last; s += 16u / lanes) {
+for (uint s = first + slot; s < last; s += gl_WorkGroupSize.x / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 10943};
+)glsl", 11025};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
