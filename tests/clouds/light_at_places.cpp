@@ -176,7 +176,7 @@ TEST_P(light_at_places, adds_the_scattered_light_where_its_own_grid_has_it) {
             const auto found = found_at<B>(device, device.limits(), *made, &made->diffuse, places);
             grid_of_floats fluence{glm::ivec3(made->diffuse.size()), {}};
             ASSERT_EQ(fluence.size, glm::ivec3(voxels >> halvings));
-            fluence.values.resize(fluence.size.x * std::size_t{64 * 64} >> (2 * halvings));
+            fluence.values.resize(std::size_t{64 * 64 * 64} >> (3 * halvings));
             ASSERT_TRUE(device.download(made->diffuse.fluence(),
                                         std::as_writable_bytes(std::span(fluence.values))));
             const light_grid grid = made->diffuse.grid(made->box);

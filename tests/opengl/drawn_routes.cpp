@@ -275,20 +275,22 @@ TEST_P(drawn_routes, draws_as_many_triangles_of_a_list) {
 }
 
 TEST_P(drawn_routes, fills_the_volume_its_own_way) {
-    (void)relight(polygon_source::stage);
-    const std::vector<GLint> none;
-    EXPECT_EQ(noted_calls::copied_into,
-              route() == accumulate_route::tiles_copied ? each_layer() : none);
-    EXPECT_EQ(noted_calls::attached_last,
-              route() == accumulate_route::tiles_drawn ? each_layer() : none);
-    const auto& draws = noted_calls::draws;
-    ASSERT_EQ(draws.size(), route() == accumulate_route::tiles_drawn ? 1 + voxels.z : 1u);
-    for (std::size_t i = 1; i < draws.size(); ++i) {
-        // A triangle that covers the layer: a fragment a voxel.
-        EXPECT_EQ(draws[i].triangles, 1u);
-        EXPECT_EQ(draws[i].fragments, voxels.x * voxels.y);
-        EXPECT_FALSE(draws[i].has_geometry_stage);
-        EXPECT_FALSE(draws[i].into_layers);
+    for (const polygon_source polygons : {polygon_source::stage, polygon_source::list}) {
+        (void)relight(polygons);
+        const std::vector<GLint> none;
+        EXPECT_EQ(noted_calls::copied_into,
+                  route() == accumulate_route::tiles_copied ? each_layer() : none);
+        EXPECT_EQ(noted_calls::attached_last,
+                  route() == accumulate_route::tiles_drawn ? each_layer() : none);
+        const auto& draws = noted_calls::draws;
+        ASSERT_EQ(draws.size(), route() == accumulate_route::tiles_drawn ? 1 + voxels.z : 1u);
+        for (std::size_t i = 1; i < draws.size(); ++i) {
+            // A triangle that covers the layer: a fragment a voxel.
+            EXPECT_EQ(draws[i].triangles, 1u);
+            EXPECT_EQ(draws[i].fragments, voxels.x * voxels.y);
+            EXPECT_FALSE(draws[i].has_geometry_stage);
+            EXPECT_FALSE(draws[i].into_layers);
+        }
     }
 }
 
