@@ -2,6 +2,7 @@
 // Bundles of parallel rays: the frame that a scene is looked at in.
 
 #include <skybark/core/records.hpp>
+#include <skybark/core/when_used.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -28,7 +29,8 @@ struct bounds {
 };
 
 /// The box of all triangles whose corners are finite: others meet no light.
-[[nodiscard]] inline bounds bounds_of(std::span<const gather_triangle> triangles) {
+template <class = when_used>
+[[nodiscard]] bounds bounds_of(std::span<const gather_triangle> triangles) {
     bounds box;
     for (const gather_triangle& t : triangles) {
         const glm::vec3 sum = t.a + t.b + t.c;

@@ -4,6 +4,7 @@
 
 #include <skybark/core/bytes.hpp>
 #include <skybark/core/result.hpp>
+#include <skybark/core/when_used.hpp>
 
 #include <array>
 #include <cstdint>
@@ -63,8 +64,9 @@ struct state_header {
 static_assert(sizeof(state_header) == 56);
 
 /// The header of `bytes`, where they are whole and belong to a gather that has the header `mine`.
-[[nodiscard]] inline result<state_header>
-read_header(std::span<const std::byte> bytes, const state_header& mine, std::uint64_t replicates) {
+template <class = when_used>
+[[nodiscard]] result<state_header> read_header(std::span<const std::byte> bytes,
+                                               const state_header& mine, std::uint64_t replicates) {
     state_header header;
     const auto refuse = [](std::string why) {
         return fail(error_code::bad_input,

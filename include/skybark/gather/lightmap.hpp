@@ -11,6 +11,7 @@
 
 #include <skybark/core/records.hpp>
 #include <skybark/core/result.hpp>
+#include <skybark/core/when_used.hpp>
 
 #include <algorithm>
 #include <array>
@@ -116,7 +117,8 @@ inline constexpr double chart_margin = 0.51;
 }
 
 /// The rows of texels that bilinear lookup reads on the chart; row 0 first.
-inline void rows_of(const flat_chart& chart, std::vector<texel_row>& rows) {
+template <class = when_used>
+void rows_of(const flat_chart& chart, std::vector<texel_row>& rows) {
     double top = 0;
     for (const glm::dvec2& p : chart.corners) {
         top = std::max(top, p.y);
@@ -163,6 +165,7 @@ struct placed_chart {
 };
 
 /// Charts on shelves.
+template <class = when_used>
 class chart_packer {
   public:
     chart_packer(const std::vector<triangle_shape>& shapes, const std::vector<std::uint32_t>& order)
@@ -258,8 +261,9 @@ class chart_packer {
 };
 
 /// The largest scale that fits, to 1 %.
-[[nodiscard]] inline std::optional<double> largest_scale(chart_packer& packer, double area,
-                                                         double longest, std::uint32_t size) {
+template <class = when_used>
+[[nodiscard]] std::optional<double> largest_scale(chart_packer<>& packer, double area,
+                                                  double longest, std::uint32_t size) {
     double low = std::log(0.25 / longest);
     double high = std::log(size / std::max(std::sqrt(area), longest));
     if (!packer.pack(std::exp(low), size)) {
@@ -282,6 +286,7 @@ class chart_packer {
 }
 
 /// Fills in the samples and the seams of one chart.
+template <class = when_used>
 class chart_sampler {
   public:
     explicit chart_sampler(lightmap& map) : map_(map) {}
@@ -399,8 +404,9 @@ class chart_sampler {
 /// Errors (`bad_input`): no triangle with an area; a corner that isn't finite; a size of 0 or more
 /// than 32,768; charts that don't fit, with the size that would hold them. `out_of_memory`: more
 /// than options.most_samples, by the triangles' area.
-[[nodiscard]] inline result<lightmap> make_lightmap(std::span<const gather_triangle> triangles,
-                                                    const lightmap_options& options = {}) {
+template <class = when_used>
+[[nodiscard]] result<lightmap> make_lightmap(std::span<const gather_triangle> triangles,
+                                             const lightmap_options& options = {}) {
     constexpr std::uint32_t largest = 32768;
     if (options.size == 0 || options.size > largest ||
         !(options.texels_per_metre >= 0 && options.texels_per_metre < 1e9f)) {
@@ -436,7 +442,7 @@ class chart_sampler {
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
         return shapes[a].height > shapes[b].height;
     });
-    detail::chart_packer packer(shapes, order);
+    detail::chart_packer<> packer(shapes, order);
     std::optional<double> scale;
     if (options.texels_per_metre > 0) {
         scale = double{options.texels_per_metre};
@@ -468,7 +474,7 @@ class chart_sampler {
     map.size = options.size;
     map.texels_per_metre = static_cast<float>(*scale);
     map.corners.assign(3 * triangles.size(), glm::vec2(0));
-    detail::chart_sampler sampler(map);
+    detail::chart_sampler<> sampler(map);
     for (const std::uint32_t number : order) {
         const detail::placed_chart& where = packer.at(number);
         const detail::flat_chart chart = detail::lay_flat(shapes[number], *scale, where.turned);

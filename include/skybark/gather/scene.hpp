@@ -11,6 +11,7 @@
 // built over them. Their number, materials, tables and patches stay.
 
 #include <skybark/core/backend.hpp>
+#include <skybark/core/when_used.hpp>
 #include <skybark/gather/bundle.hpp>
 #include <skybark/kernels/patch_samples.hpp>
 #include <skybark/kernels/surface_light.hpp>
@@ -40,7 +41,8 @@ inline constexpr std::size_t alpha_words = sizeof(alpha_coordinates) / 4;
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-[[nodiscard]] inline result<void> check_material(const gather_material& m, std::size_t number) {
+template <class = when_used>
+[[nodiscard]] result<void> check_material(const gather_material& m, std::size_t number) {
     const glm::vec3 leaves = m.diffuse + m.transmission;
     const auto within = [](float x) { return x >= 0.0f && x <= 1.0f; };
     const auto emitted = [](float x) { return x >= 0.0f && std::isfinite(x); };
@@ -59,8 +61,9 @@ inline constexpr std::size_t alpha_words = sizeof(alpha_coordinates) / 4;
     return {};
 }
 
-[[nodiscard]] inline result<void> check_alpha(std::span<const std::uint32_t> words,
-                                              std::uint32_t number, std::size_t triangle) {
+template <class = when_used>
+[[nodiscard]] result<void> check_alpha(std::span<const std::uint32_t> words, std::uint32_t number,
+                                       std::size_t triangle) {
     const std::size_t at = alpha_words * (number - std::size_t{1});
     if (at + alpha_words <= words.size()) {
         const std::uint64_t width = words[at + 7] & 0xffffu;
@@ -75,7 +78,8 @@ inline constexpr std::size_t alpha_words = sizeof(alpha_coordinates) / 4;
                     std::to_string(words.size()) + " words given.");
 }
 
-[[nodiscard]] inline result<void> check_scene(const scene_description& what) {
+template <class = when_used>
+[[nodiscard]] result<void> check_scene(const scene_description& what) {
     if (what.triangles.empty() || what.triangles.size() > 0x7fffffffu) {
         return fail(error_code::bad_input, "A scene of " + std::to_string(what.triangles.size()) +
                                                " triangles was given; expected 1 to 2147483647.");

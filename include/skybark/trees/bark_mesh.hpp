@@ -19,6 +19,7 @@
 // their area: best are meshes whose rings lie about as far apart as their corners.
 
 #include <skybark/core/backend.hpp>
+#include <skybark/core/when_used.hpp>
 #include <skybark/kernels/bark.hpp>
 #include <skybark/trees/bark_texture.hpp>
 #include <skybark/trees/branch_mesh.hpp>
@@ -71,6 +72,7 @@ namespace detail {
 }
 
 /// Finds which triangles hang together by edges that may be split.
+template <class = when_used>
 class long_edge_groups {
   public:
     long_edge_groups(const std::vector<surface_vertex>& vertices,
@@ -129,9 +131,10 @@ class long_edge_groups {
 inline constexpr std::uint8_t not_refined = 255;
 
 /// The mean radius of the branches in each group, by how far u goes over so much of their width.
-[[nodiscard]] inline std::vector<float> radii_of_groups(const std::vector<surface_vertex>& vertices,
-                                                        const std::vector<std::uint32_t>& indices,
-                                                        long_edge_groups& groups) {
+template <class = when_used>
+[[nodiscard]] std::vector<float> radii_of_groups(const std::vector<surface_vertex>& vertices,
+                                                 const std::vector<std::uint32_t>& indices,
+                                                 long_edge_groups<>& groups) {
     const std::size_t triangles = indices.size() / 3;
     std::vector<float> sum(triangles, 0.0f), count(triangles, 0.0f);
     for (std::size_t t = 0; t < triangles; ++t) {
@@ -156,7 +159,8 @@ inline constexpr std::uint8_t not_refined = 255;
 /// threshold, unless all that hang together by such edges are too narrow around for bark to show.
 /// So an edge between one that is refined and one that is not, or between two with other halvings,
 /// isn't split at rest, nor in any pose that stretches it less than that.
-[[nodiscard]] inline std::vector<std::uint8_t>
+template <class = when_used>
+[[nodiscard]] std::vector<std::uint8_t>
 triangles_to_refine(const std::vector<surface_vertex>& vertices,
                     const std::vector<std::uint32_t>& indices, const bark_options& options) {
     const std::size_t triangles = indices.size() / 3;
@@ -164,7 +168,7 @@ triangles_to_refine(const std::vector<surface_vertex>& vertices,
     const auto corner = [&](std::size_t t, std::size_t k) -> const surface_vertex& {
         return vertices[indices[3 * t + k]];
     };
-    long_edge_groups groups(vertices, indices, shortest);
+    long_edge_groups<> groups(vertices, indices, shortest);
     std::vector<bool> wide(triangles);
     for (std::size_t t = 0; t < triangles; ++t) {
         if (width_around(corner(t, 0), corner(t, 1), corner(t, 2)) >=

@@ -1,6 +1,8 @@
 #pragma once
 // Height maps of bark, built in or the caller's, and the normal maps that belong to them.
 
+#include <skybark/core/when_used.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -127,8 +129,9 @@ template <class Height>
 
 /// Bark of oaks and ashes: long plates with rough tops between deep furrows that join and part.
 /// A repeat is about 0.5 m around and 0.7 m along.
-[[nodiscard]] inline bark_texture furrowed_bark(std::uint32_t seed, std::uint32_t width = 512,
-                                                std::uint32_t height = 512) {
+template <class = when_used>
+[[nodiscard]] bark_texture furrowed_bark(std::uint32_t seed, std::uint32_t width = 512,
+                                         std::uint32_t height = 512) {
     return detail::texture_of(width, height, [seed](double u, double v) {
         constexpr std::uint32_t plates_around = 10;
         constexpr std::uint32_t plates_along = 4;
@@ -147,8 +150,9 @@ template <class Height>
 
 /// Bark of aspens and beeches: smooth, with low swells, short level lenticels that stand out, and
 /// fine wrinkles around. A repeat is about 0.5 m around and 0.7 m along.
-[[nodiscard]] inline bark_texture smooth_bark(std::uint32_t seed, std::uint32_t width = 512,
-                                              std::uint32_t height = 512) {
+template <class = when_used>
+[[nodiscard]] bark_texture smooth_bark(std::uint32_t seed, std::uint32_t width = 512,
+                                       std::uint32_t height = 512) {
     return detail::texture_of(width, height, [seed](double u, double v) {
         const double swell = detail::fractal_noise(u, v, 4, 3, 3, seed);
         const double wrinkle = detail::fractal_noise(u, v, 6, 64, 3, seed + 10);
@@ -182,8 +186,9 @@ template <class Height>
 /// stand for 0 … relief metres: RGBA8 rows of width · height texels like the heights'. Red, green
 /// and blue are the normal in tangent space (x towards growing u, y towards growing v) from
 /// [−1, 1]; alpha is the height. Slopes are central differences.
-[[nodiscard]] inline std::vector<std::uint8_t> normal_map(const bark_texture& of, float relief,
-                                                          float metres_around, float metres_along) {
+template <class = when_used>
+[[nodiscard]] std::vector<std::uint8_t> normal_map(const bark_texture& of, float relief,
+                                                   float metres_around, float metres_along) {
     std::vector<std::uint8_t> rows(std::size_t{4} * of.width * of.height);
     const auto height_of = [&](std::uint32_t x, std::uint32_t y) {
         return of.heights[std::size_t{y % of.height} * of.width + x % of.width];

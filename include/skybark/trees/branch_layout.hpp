@@ -5,6 +5,7 @@
 // segments share one end, so their rings agree bit for bit. A chain that is not a root's starts
 // inside the segment that it grows from, at its own end, and is capped at both ends.
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/kernels/hermite_branch.hpp>
 #include <skybark/trees/skeleton.hpp>
 
@@ -40,6 +41,7 @@ namespace detail {
 [[nodiscard]] inline glm::vec4 as_vec4(const glm::quat& q) { return {q.x, q.y, q.z, q.w}; }
 
 /// Walks the skeleton once, parents before children.
+template <class = when_used>
 class branch_layout_builder {
   public:
     branch_layout_builder(const skeleton& from, kernels::branch_frame frame)
@@ -308,9 +310,9 @@ class branch_layout_builder {
 /// The ends and segments of a skeleton. Linear time. Every segment keeps its place; an end is
 /// shared by a segment and its continuation. `frame` is how the rings between two ends will be
 /// turned: it decides which joints would fold.
-[[nodiscard]] inline branch_layout layout_branches(const skeleton& from,
-                                                   kernels::branch_frame frame) {
-    return detail::branch_layout_builder(from, frame).build();
+template <class = when_used>
+[[nodiscard]] branch_layout layout_branches(const skeleton& from, kernels::branch_frame frame) {
+    return detail::branch_layout_builder<>(from, frame).build();
 }
 
 } // namespace skybark::trees

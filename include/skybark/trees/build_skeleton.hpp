@@ -6,6 +6,7 @@
 // Frames: the smallest rotation from each segment to its child, applied from the root outwards,
 // which is parallel transport along the tree (Wang et al. 2008 say why that is wanted).
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/trees/skeleton.hpp>
 
 #include <algorithm>
@@ -36,7 +37,8 @@ namespace detail::from_segments {
 /// two arms of a symmetric fork must not be told apart by rounding.
 inline constexpr double alignment_tolerance = 1e-6;
 
-[[nodiscard]] inline std::string number_text(double value) {
+template <class = when_used>
+[[nodiscard]] std::string number_text(double value) {
     char buffer[32];
     const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
     return std::string(buffer, end);
@@ -46,7 +48,8 @@ inline constexpr double alignment_tolerance = 1e-6;
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-[[nodiscard]] inline std::string vector_text(const glm::vec3& v) {
+template <class = when_used>
+[[nodiscard]] std::string vector_text(const glm::vec3& v) {
     std::string text = number_text(v.x); // "(" + a temporary makes g++ 12 see an overlap
     return text.insert(0, 1, '(') + ", " + number_text(v.y) + ", " + number_text(v.z) + ")";
 }
@@ -56,8 +59,8 @@ inline constexpr double alignment_tolerance = 1e-6;
 }
 
 /// What is wrong with segment `i` alone, or an empty string.
-[[nodiscard]] inline std::string segment_complaint(std::span<const segment> segments,
-                                                   std::size_t i) {
+template <class = when_used>
+[[nodiscard]] std::string segment_complaint(std::span<const segment> segments, std::size_t i) {
     const segment& s = segments[i];
     const std::string who = "Segment " + std::to_string(i);
     if (!is_finite(s.base))
@@ -82,8 +85,9 @@ inline constexpr double alignment_tolerance = 1e-6;
 }
 
 /// Names the segments of one cycle, given that some segments were never reached from a root.
-[[nodiscard]] inline std::string cycle_complaint(std::span<const segment> segments,
-                                                 const std::vector<std::uint32_t>& order) {
+template <class = when_used>
+[[nodiscard]] std::string cycle_complaint(std::span<const segment> segments,
+                                          const std::vector<std::uint32_t>& order) {
     std::vector<std::uint8_t> seen(segments.size(), 0);
     for (const std::uint32_t i : order)
         seen[i] = 1;
@@ -116,7 +120,8 @@ struct child_lists {
 };
 
 /// Counting sort by parent: stable, so siblings keep their input order.
-[[nodiscard]] inline child_lists list_children(std::span<const segment> segments) {
+template <class = when_used>
+[[nodiscard]] child_lists list_children(std::span<const segment> segments) {
     const std::size_t n = segments.size();
     child_lists lists;
     lists.first.assign(n + 1, 0);
@@ -190,9 +195,9 @@ struct child_lists {
 ///
 /// Linear time, no recursion; needs about 60 bytes a segment besides the skeleton.
 /// Source: Akagi and Kitajima, section 2.1.
-[[nodiscard]] inline result<skeleton>
-build_skeleton(std::span<const segment> segments,
-               std::vector<std::uint32_t>* input_index = nullptr) {
+template <class = when_used>
+[[nodiscard]] result<skeleton> build_skeleton(std::span<const segment> segments,
+                                              std::vector<std::uint32_t>* input_index = nullptr) {
     const std::size_t n = segments.size();
     if (n == 0)
         return fail(error_code::bad_input, "A skeleton needs at least one segment; got none.");
@@ -292,7 +297,8 @@ build_skeleton(std::span<const segment> segments,
 }
 
 /// The box around both ends of every segment, each as a ball of the radius there (m).
-[[nodiscard]] inline bounding_box bounds(const skeleton& s) {
+template <class = when_used>
+[[nodiscard]] bounding_box bounds(const skeleton& s) {
     if (s.empty())
         return {};
     bounding_box box{glm::vec3(std::numeric_limits<float>::max()),
@@ -308,7 +314,8 @@ build_skeleton(std::span<const segment> segments,
 }
 
 /// From the lowest end of a segment to the highest one (m), radii left out; 0 if empty.
-[[nodiscard]] inline float height(const skeleton& s) {
+template <class = when_used>
+[[nodiscard]] float height(const skeleton& s) {
     if (s.empty())
         return 0;
     float low = std::numeric_limits<float>::max();

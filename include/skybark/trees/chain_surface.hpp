@@ -12,6 +12,8 @@
 // loop or of the tube. Even a single triangle is enough, with the loop made small, so there is room
 // for any number of branches.
 
+#include <skybark/core/when_used.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,6 +25,7 @@
 
 namespace skybark::trees::detail {
 
+template <class = when_used>
 class chain_surface {
   public:
     static constexpr std::uint32_t nothing = 0xffffffffu;

@@ -11,6 +11,7 @@
 //    their ring: on a closed surface a fold is a wrinkle.
 //  - Ends at the very same place (a scan that has a branch twice) are set a little apart.
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/kernels/unit_polygon.hpp>
 #include <skybark/trees/branch_layout.hpp>
 
@@ -55,6 +56,7 @@ struct closed_layout {
 namespace detail {
 
 /// Walks the chains of one skeleton, parents before children.
+template <class = when_used>
 class closed_layout_builder {
   public:
     closed_layout_builder(const skeleton& from, const closed_mesh_options& options)
@@ -544,9 +546,10 @@ class closed_layout_builder {
 } // namespace detail
 
 /// The chains of a skeleton and how they join. Nearly linear time.
-[[nodiscard]] inline closed_layout layout_closed(const skeleton& from,
-                                                 const closed_mesh_options& options) {
-    return detail::closed_layout_builder(from, options).build();
+template <class = when_used>
+[[nodiscard]] closed_layout layout_closed(const skeleton& from,
+                                          const closed_mesh_options& options) {
+    return detail::closed_layout_builder<>(from, options).build();
 }
 
 } // namespace skybark::trees

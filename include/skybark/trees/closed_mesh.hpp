@@ -18,6 +18,7 @@
 // What the surface may do: cross itself, where the skeleton does or a joint bends a lot.
 
 #include <skybark/core/backend.hpp>
+#include <skybark/core/when_used.hpp>
 #include <skybark/kernels/branch_join.hpp>
 #include <skybark/kernels/branch_tip.hpp>
 #include <skybark/kernels/hermite_branch.hpp>
@@ -48,6 +49,7 @@ struct closed_part {
 };
 
 /// Cuts the surface into parts, each with all the vertices that its triangles have.
+template <class = when_used>
 class closed_part_builder {
   public:
     /// `most_bytes` is the largest buffer, `alignment` what offsets into the vertices are multiples
@@ -206,7 +208,7 @@ class closed_part_builder {
         const double radius = (double{start_of(s).radius} + double{end_of(s).radius}) / 2;
         const glm::dvec2 metric(6.283185307179586 * radius / options_.sides,
                                 (along_[around + 1] - along_[around]) / gaps());
-        const chain_surface::hole& hole = surface_->cut(centre, loop_, metric);
+        const chain_surface<>::hole& hole = surface_->cut(centre, loop_, metric);
         double low = hole.centre_v;
         double high = low;
         for (std::uint32_t t = 0; t < hole.triangles; ++t) {
@@ -350,7 +352,7 @@ class closed_part_builder {
         const std::uint32_t triangles = tube_.ring_triangles();
         for (std::uint32_t t = 0; t < triangles; ++t) {
             if (surface_ && surface_->triangles()[std::size_t{k} * triangles + t].hole !=
-                                chain_surface::nothing) {
+                                chain_surface<>::nothing) {
                 continue;
             }
             for (std::uint32_t n = 0; n < 3; ++n) {
@@ -361,10 +363,10 @@ class closed_part_builder {
 
     /// The triangles around a hole, as far as other holes have left them.
     void add_belt(const placed_hole& placed) {
-        const chain_surface::hole& hole = surface_->holes()[placed.number];
+        const chain_surface<>::hole& hole = surface_->holes()[placed.number];
         for (std::uint32_t n = 0; n < hole.triangles; ++n) {
-            const chain_surface::triangle t = surface_->triangles()[hole.first_triangle + n];
-            if (t.hole != chain_surface::nothing) {
+            const chain_surface<>::triangle t = surface_->triangles()[hole.first_triangle + n];
+            if (t.hole != chain_surface<>::nothing) {
                 continue;
             }
             const std::int32_t shift = best_shift(t);
@@ -375,7 +377,7 @@ class closed_part_builder {
     }
 
     /// By how many periods to see a triangle so that most of its vertices are there already.
-    [[nodiscard]] std::int32_t best_shift(const chain_surface::triangle& t) const {
+    [[nodiscard]] std::int32_t best_shift(const chain_surface<>::triangle& t) const {
         std::int32_t best = 0;
         int most = -1;
         for (const std::int32_t wrap : t.wrap) {
@@ -398,7 +400,7 @@ class closed_part_builder {
 
     /// From the loop, with the child's texture coordinates, to the child's first ring.
     void add_skirt(const placed_hole& placed) {
-        const chain_surface::hole& hole = surface_->holes()[placed.number];
+        const chain_surface<>::hole& hole = surface_->holes()[placed.number];
         const std::uint32_t ring = tube(child_segment(collars_[placed.number]));
         loop_vertices_.clear();
         for (std::uint32_t c = 0; c <= options_.sides; ++c) {
@@ -508,9 +510,9 @@ class closed_part_builder {
     std::uint64_t places_ = 0;
     // The chain under way.
     branch_chain chain_;
-    std::optional<chain_surface> surface_; ///< where branches grow from it
-    std::vector<double> along_;            ///< m, at each of its joints
-    std::vector<std::uint32_t> collars_;   ///< of each hole
+    std::optional<chain_surface<>> surface_; ///< where branches grow from it
+    std::vector<double> along_;              ///< m, at each of its joints
+    std::vector<std::uint32_t> collars_;     ///< of each hole
     std::vector<placed_hole> holes_;
     std::vector<glm::dvec2> loop_;
     std::vector<std::uint32_t> loop_vertices_;
@@ -570,8 +572,8 @@ class closed_mesh {
         mesh.corners_ = std::move(*corners);
         const closed_layout layout = layout_closed(of, options);
         const device_limits limits = device.limits();
-        detail::closed_part_builder builder(layout, options, limits.max_buffer_bytes,
-                                            limits.view_alignment);
+        detail::closed_part_builder<> builder(layout, options, limits.max_buffer_bytes,
+                                              limits.view_alignment);
         auto built = builder.build(
             [&](const detail::closed_part& p, std::uint32_t first_point, std::uint32_t first_tip) {
                 return mesh.add_part(device, p, first_point, first_tip);

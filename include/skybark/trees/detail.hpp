@@ -15,6 +15,7 @@
 // a chunk ends, so does the merging of segments; the surface is whole across.
 
 #include <skybark/core/backend.hpp>
+#include <skybark/core/when_used.hpp>
 #include <skybark/kernels/detailed_branch.hpp>
 #include <skybark/kernels/merge_ends.hpp>
 #include <skybark/kernels/pose_ends.hpp>
@@ -48,8 +49,9 @@ struct skeleton_chain {
 /// When each end's chain is left out as it gets thin: one share an end of `layout`, which is that
 /// of `from`. A tree's chains are ranked by thickness, so that what stays stands for others as
 /// thick, and a tree's thickest chain is never left out.
-[[nodiscard]] inline std::vector<kernels::chain_share> chain_shares(const skeleton& from,
-                                                                    const branch_layout& layout) {
+template <class = when_used>
+[[nodiscard]] std::vector<kernels::chain_share> chain_shares(const skeleton& from,
+                                                             const branch_layout& layout) {
     std::vector<detail::skeleton_chain> chains;
     std::vector<std::uint32_t> chain_of(from.size());
     for (std::uint32_t i = 0; i < from.size(); ++i) {

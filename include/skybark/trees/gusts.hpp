@@ -19,6 +19,7 @@
 // Shinozuka and Jan 1972 (the sum of waves).
 
 #include <skybark/core/result.hpp>
+#include <skybark/core/when_used.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -107,8 +108,8 @@ struct kaimal_gusts {
 namespace detail {
 
 /// bad_input unless low ≤ value ≤ high; what is not a number isn't.
-[[nodiscard]] inline result<void> expect_range(const char* what, double value, double low,
-                                               double high) {
+template <class = when_used>
+[[nodiscard]] result<void> expect_range(const char* what, double value, double low, double high) {
     if (value >= low && value <= high) {
         return {};
     }
@@ -125,7 +126,8 @@ struct range_check {
     double high;
 };
 
-[[nodiscard]] inline result<void> expect_ranges(std::initializer_list<range_check> checks) {
+template <class = when_used>
+[[nodiscard]] result<void> expect_ranges(std::initializer_list<range_check> checks) {
     for (const range_check& c : checks) {
         if (auto valid = expect_range(c.what, c.value, c.low, c.high); !valid) {
             return valid;
@@ -137,7 +139,8 @@ struct range_check {
 inline constexpr double most_compass = 1e6; ///< degrees
 inline constexpr std::size_t most_waves = 65'536;
 
-[[nodiscard]] inline result<void> check(double speed, double from, const mean_profile& p) {
+template <class = when_used>
+[[nodiscard]] result<void> check(double speed, double from, const mean_profile& p) {
     return expect_ranges({{"wind's speed", speed, 0, 1000},
                           {"direction of the wind", from, -most_compass, most_compass},
                           {"exponent of the mean wind's profile", p.exponent, 0, 1},
@@ -145,7 +148,8 @@ inline constexpr std::size_t most_waves = 65'536;
                           {"height of the ground", p.ground, -1e6, 1e6}});
 }
 
-[[nodiscard]] inline result<void> check(const turbulence_options& t) {
+template <class = when_used>
+[[nodiscard]] result<void> check(const turbulence_options& t) {
     if (t.waves < 4 || t.waves > most_waves || t.waves % 4 != 0) {
         return fail(error_code::bad_input, std::string("Gusts cannot have ") +
                                                std::to_string(t.waves) +
@@ -157,7 +161,8 @@ inline constexpr std::size_t most_waves = 65'536;
                           {"decay of the coherence", t.decay, 0, 1000}});
 }
 
-[[nodiscard]] inline gusts steady(double speed, double from, const mean_profile& profile) {
+template <class = when_used>
+[[nodiscard]] gusts steady(double speed, double from, const mean_profile& profile) {
     return {blowing_from(from) * speed, profile, {}};
 }
 
@@ -221,14 +226,16 @@ template <class Generator>
 } // namespace detail
 
 /// The table of a model. Errors: bad_input where a value is outside the range beside it above.
-[[nodiscard]] inline result<gusts> tabulate(const steady_wind& model) {
+template <class = when_used>
+[[nodiscard]] result<gusts> tabulate(const steady_wind& model) {
     if (auto valid = detail::check(model.speed, model.from, model.profile); !valid) {
         return failure(valid.error());
     }
     return detail::steady(model.speed, model.from, model.profile);
 }
 
-[[nodiscard]] inline result<gusts> tabulate(const power_law_gusts& model) {
+template <class = when_used>
+[[nodiscard]] result<gusts> tabulate(const power_law_gusts& model) {
     if (auto valid = detail::check(model.speed, model.from, model.profile); !valid) {
         return failure(valid.error());
     }
@@ -264,7 +271,8 @@ template <class Generator>
     return table;
 }
 
-[[nodiscard]] inline result<gusts> tabulate(const kaimal_gusts& model) {
+template <class = when_used>
+[[nodiscard]] result<gusts> tabulate(const kaimal_gusts& model) {
     if (auto valid = detail::check(model.speed, model.from, model.profile); !valid) {
         return failure(valid.error());
     }
@@ -297,7 +305,8 @@ template <class Generator>
 
 /// A caller's own table. Errors: bad_input where it has too many waves, or a number in it is not
 /// finite or beyond 1e6 (frequencies and wave vectors) or 1000 m/s.
-[[nodiscard]] inline result<gusts> tabulate(const gusts& table) {
+template <class = when_used>
+[[nodiscard]] result<gusts> tabulate(const gusts& table) {
     if (auto valid = detail::check(0, 0, table.profile); !valid) {
         return failure(valid.error());
     }

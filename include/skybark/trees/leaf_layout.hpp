@@ -5,6 +5,7 @@
 // Penn, "Creation and Rendering of Realistic Trees", SIGGRAPH 1995, section 4.9 and its table
 // (Leaves, LeafScale, LeafScaleX); the golden angle of a spiral phyllotaxis.
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/trees/leaf_texture.hpp>
 #include <skybark/trees/skeleton.hpp>
 #include <skybark/trees/species.hpp>
@@ -54,6 +55,7 @@ struct twig {
     float length = 0;
 };
 
+template <class = when_used>
 class leaf_placer {
   public:
     leaf_placer(const skeleton& on, const leaf_options& options)
@@ -209,13 +211,14 @@ class leaf_placer {
 /// Leaves on the twigs of a skeleton, twig by twig in the order of their last segments, from each
 /// tip down. The same skeleton, options and seed give the same leaves. As many as the twigs call
 /// for, at most `options.most`; none where sizes or numbers are not positive.
-[[nodiscard]] inline std::vector<leaf> place_leaves(const skeleton& on,
-                                                    const leaf_options& options) {
-    return detail::leaf_placer(on, options).place();
+template <class = when_used>
+[[nodiscard]] std::vector<leaf> place_leaves(const skeleton& on, const leaf_options& options) {
+    return detail::leaf_placer<>(on, options).place();
 }
 
 /// Leaves as Weber and Penn's table has them: so many a stem of the last level, over its length.
-[[nodiscard]] inline leaf_options leaves_of(const weber_penn_parameters& p) {
+template <class = when_used>
+[[nodiscard]] leaf_options leaves_of(const weber_penn_parameters& p) {
     leaf_options o;
     o.per_twig = static_cast<float>(std::abs(p.leaves));
     o.length = p.leaf_scale;
@@ -228,7 +231,8 @@ class leaf_placer {
 }
 
 /// Those, with what the table doesn't say of the built-in species. Others get the table's alone.
-[[nodiscard]] inline leaf_options leaves_of(const species_entry& species) {
+template <class = when_used>
+[[nodiscard]] leaf_options leaves_of(const species_entry& species) {
     leaf_options o = leaves_of(species.parameters);
     if (species.name == "quaking_aspen") {
         o.shape = leaf_shape::round; // on long flat stalks: they hang, and tremble in any air
@@ -258,8 +262,9 @@ inline constexpr float fresh_leaf_mass = 0.19f;
 
 /// m² of leaves on each of `segments` segments, one side. `cover` is the part of the blade's
 /// octagon that the leaf fills (`leaf_picture::cover`). Carriers beyond are left out.
-[[nodiscard]] inline std::vector<float> leaf_area(std::span<const leaf> leaves,
-                                                  std::size_t segments, float cover = 1) {
+template <class = when_used>
+[[nodiscard]] std::vector<float> leaf_area(std::span<const leaf> leaves, std::size_t segments,
+                                           float cover = 1) {
     std::vector<float> area(segments, 0.0f);
     for (const leaf& l : leaves) {
         if (l.carrier < segments) {
@@ -270,9 +275,10 @@ inline constexpr float fresh_leaf_mass = 0.19f;
 }
 
 /// kg of leaves on each of `segments` segments.
-[[nodiscard]] inline std::vector<float> leaf_mass(std::span<const leaf> leaves,
-                                                  std::size_t segments, float cover = 1,
-                                                  float per_square_metre = fresh_leaf_mass) {
+template <class = when_used>
+[[nodiscard]] std::vector<float> leaf_mass(std::span<const leaf> leaves, std::size_t segments,
+                                           float cover = 1,
+                                           float per_square_metre = fresh_leaf_mass) {
     std::vector<float> mass = leaf_area(leaves, segments, cover);
     for (float& m : mass) {
         m *= per_square_metre;

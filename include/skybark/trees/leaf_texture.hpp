@@ -1,6 +1,7 @@
 #pragma once
 // Built-in pictures of leaves: an outline, a stalk, a midrib and side veins, computed.
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/shared/noise.hpp>
 
 #include <algorithm>
@@ -40,7 +41,8 @@ struct leaf_picture {
 
 /// The picture with its rows the other way round: for one that stands on its stalk, as people look
 /// at leaves and as image files mostly show them.
-[[nodiscard]] inline leaf_picture turned_over(const leaf_picture& picture) {
+template <class = when_used>
+[[nodiscard]] leaf_picture turned_over(const leaf_picture& picture) {
     leaf_picture turned = picture;
     const std::size_t row = std::size_t{4} * picture.width;
     for (std::size_t y = 0; y < picture.height; ++y) {
@@ -114,7 +116,8 @@ struct leaf_sample {
 } // namespace detail
 
 /// A picture of a leaf with `side` × `side` pixels (at least 1); 16 samples a pixel.
-[[nodiscard]] inline leaf_picture draw_leaf(leaf_shape shape, std::uint32_t side = 256) {
+template <class = when_used>
+[[nodiscard]] leaf_picture draw_leaf(leaf_shape shape, std::uint32_t side = 256) {
     const detail::leaf_look& look = detail::look_of(shape);
     const std::uint32_t n = std::max(side, 1u);
     leaf_picture picture{n, n, std::vector<std::uint8_t>(std::size_t{4} * n * n)};

@@ -6,6 +6,7 @@
 // Where those differ (the willow's twigs), the values are those most of them share.
 // Angles in degrees, as there.
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/trees/weber_penn.hpp>
 
 #include <array>
@@ -15,7 +16,8 @@
 namespace skybark::trees {
 
 /// Populus tremuloides: slender, conical crown.
-[[nodiscard]] inline weber_penn_parameters quaking_aspen() {
+template <class = when_used>
+[[nodiscard]] weber_penn_parameters quaking_aspen() {
     weber_penn_parameters p;
     p.shape = 7;
     p.base_size = 0.4f;
@@ -55,7 +57,8 @@ namespace skybark::trees {
 }
 
 /// Nyssa sylvatica: tall, with long straight boughs.
-[[nodiscard]] inline weber_penn_parameters black_tupelo() {
+template <class = when_used>
+[[nodiscard]] weber_penn_parameters black_tupelo() {
     weber_penn_parameters p;
     p.shape = 4;
     p.base_size = 0.2f;
@@ -99,7 +102,8 @@ namespace skybark::trees {
 }
 
 /// Salix babylonica: several trunks, twigs that hang down and are cut to an envelope.
-[[nodiscard]] inline weber_penn_parameters weeping_willow() {
+template <class = when_used>
+[[nodiscard]] weber_penn_parameters weeping_willow() {
     weber_penn_parameters p;
     p.shape = 3;
     p.base_size = 0.05f;
@@ -161,7 +165,8 @@ namespace skybark::trees {
 }
 
 /// Quercus kelloggii: low, broad, with twisted boughs.
-[[nodiscard]] inline weber_penn_parameters california_black_oak() {
+template <class = when_used>
+[[nodiscard]] weber_penn_parameters california_black_oak() {
     weber_penn_parameters p;
     p.shape = 2;
     p.base_size = 0.05f;
@@ -220,7 +225,8 @@ struct species_entry {
 };
 
 /// Every built-in species, in alphabetical order.
-[[nodiscard]] inline const std::array<species_entry, 4>& all_species() {
+template <class = when_used>
+[[nodiscard]] const std::array<species_entry, 4>& all_species() {
     static const std::array<species_entry, 4> species{{
         {"black_tupelo", "Black tupelo (Nyssa sylvatica)", black_tupelo()},
         {"california_black_oak", "California black oak (Quercus kelloggii)",
@@ -232,7 +238,8 @@ struct species_entry {
 }
 
 /// The species of that name, or null. The pointer stays valid for as long as the program runs.
-[[nodiscard]] inline const species_entry* find_species(std::string_view name) {
+template <class = when_used>
+[[nodiscard]] const species_entry* find_species(std::string_view name) {
     for (const species_entry& entry : all_species())
         if (entry.name == name)
             return &entry;

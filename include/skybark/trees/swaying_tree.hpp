@@ -17,6 +17,7 @@
 // (or branch_mesh.hpp, or detail.hpp), bark_mesh.hpp, leaf_mesh.hpp.
 // Source: Akagi and Kitajima, figure 6, with the sway on the device as well.
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/trees/bark_mesh.hpp>
 #include <skybark/trees/closed_mesh.hpp>
 #include <skybark/trees/detail.hpp>
@@ -61,6 +62,7 @@ struct options_of<detailed_branch_mesh<B>> {
 namespace detail {
 
 /// The crown of each tree: the box around its leaves, and their area.
+template <class = when_used>
 class crowns {
   public:
     crowns(const skeleton& of, std::span<const leaf> leaves, const std::vector<float>& area)
@@ -109,9 +111,10 @@ inline constexpr double ellipse = 0.78539816339744831; // of its box
 /// Pictures have fewer and larger leaves than trees, one for several: where they come to more than
 /// `most_index` m² for each m² of ground below the crown, they count for that much (a leaf area
 /// index of 3 to 6 is that of broad-leaved crowns: Asner, Scurlock and Hicke 2003).
-inline void limit_leaf_area(const skeleton& of, std::span<const leaf> leaves, double most_index,
-                            std::vector<float>& area) {
-    detail::crowns(of, leaves, area).scale(area, [&](double all, const glm::dvec3& size) {
+template <class = when_used>
+void limit_leaf_area(const skeleton& of, std::span<const leaf> leaves, double most_index,
+                     std::vector<float>& area) {
+    detail::crowns<>(of, leaves, area).scale(area, [&](double all, const glm::dvec3& size) {
         return std::min(1.0, most_index * detail::ellipse * size.x * size.z / all);
     });
 }
@@ -119,9 +122,9 @@ inline void limit_leaf_area(const skeleton& of, std::span<const leaf> leaves, do
 /// What of it the wind finds: leaves stand in each other's lee. By Beer and Lambert's law, as Monsi
 /// and Saeki (1953) have it for light: of leaves of area A whose crown's outline has area S, as
 /// much as S (1 − e^(−k A / S)) / k is in the open, k = ½ for leaves that look everywhere.
-inline void shelter_leaves(const skeleton& of, std::span<const leaf> leaves,
-                           std::vector<float>& area) {
-    detail::crowns(of, leaves, area).scale(area, [&](double all, const glm::dvec3& size) {
+template <class = when_used>
+void shelter_leaves(const skeleton& of, std::span<const leaf> leaves, std::vector<float>& area) {
+    detail::crowns<>(of, leaves, area).scale(area, [&](double all, const glm::dvec3& size) {
         const double outline = detail::ellipse * std::max(size.x, size.z) * size.y;
         const double depth = 0.5 * all / outline;
         return depth > 1e-6 ? -std::expm1(-depth) / depth : 1.0;
@@ -133,7 +136,8 @@ inline void shelter_leaves(const skeleton& of, std::span<const leaf> leaves,
 /// as no twig does. A branch that goes on for l m to its farthest tip is made `tip` + l / `slender`
 /// m thick at least. Real ones are 50 to 150 times as long as thick (McMahon and Kronauer 1976), so
 /// that only what is out of all proportion changes. Lengths and places stay.
-[[nodiscard]] inline skeleton load_bearing(skeleton of, float tip = 0.0015f, float slender = 250) {
+template <class = when_used>
+[[nodiscard]] skeleton load_bearing(skeleton of, float tip = 0.0015f, float slender = 250) {
     std::vector<float> beyond(of.size(), 0.0f); // from a segment's tip to the farthest one
     for (std::size_t i = of.size(); i-- > 0;) {
         const float from_base = beyond[i] + of.length[i];

@@ -2,6 +2,7 @@
 // From where a scene is looked at, and how exact it has to be: what every level of detail goes by.
 
 #include <skybark/core/result.hpp>
+#include <skybark/core/when_used.hpp>
 
 #include <cmath>
 #include <glm/vec3.hpp>
@@ -38,8 +39,9 @@ struct view_detail {
 /// The view of a perspective camera: the picture's height in pixels and its vertical field of view
 /// in radians. Errors: bad_input where the height is not a positive number, the field is not within
 /// (0, π), or the camera is not finite.
-[[nodiscard]] inline result<view_detail> view_from(glm::vec3 camera, float image_height,
-                                                   float vertical_field) {
+template <class = when_used>
+[[nodiscard]] result<view_detail> view_from(glm::vec3 camera, float image_height,
+                                            float vertical_field) {
     view_detail view;
     view.camera = camera;
     view.pixels_per_radian = image_height / (2 * std::tan(vertical_field / 2));

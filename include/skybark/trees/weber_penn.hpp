@@ -16,6 +16,7 @@
 // - lobes shape a cross-section, which a segment hasn't got: the numbers are kept for meshers, and
 //   their mean over the angle is the radius here.
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/trees/skeleton.hpp>
 
 #include <algorithm>
@@ -178,7 +179,8 @@ struct parameter_limit {
     T high;
 };
 
-[[nodiscard]] inline std::string value_text(double value) {
+template <class = when_used>
+[[nodiscard]] std::string value_text(double value) {
     char buffer[32];
     return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
 }
@@ -194,7 +196,8 @@ template <class T>
            "; expected a number from " + text(limit.low) + " to " + text(limit.high) + ".";
 }
 
-[[nodiscard]] inline std::string complaint_of_level(const weber_penn_level& l, int n) {
+template <class = when_used>
+[[nodiscard]] std::string complaint_of_level(const weber_penn_level& l, int n) {
     const std::array<parameter_limit<float>, 13> reals{{
         {"down_angle", l.down_angle, -360, 360},
         {"down_angle_v", l.down_angle_v, -360, 360},
@@ -224,7 +227,8 @@ template <class T>
 }
 
 /// What is wrong with the parameters, or an empty string.
-[[nodiscard]] inline std::string complaint_of(const weber_penn_parameters& p) {
+template <class = when_used>
+[[nodiscard]] std::string complaint_of(const weber_penn_parameters& p) {
     const std::array<parameter_limit<int>, 6> counts{{
         {"shape", p.shape, 0, 8},
         {"levels", p.levels, 1, most_levels},
@@ -327,6 +331,7 @@ struct piece {
     int segment = 0;
 };
 
+template <class = when_used>
 class grower {
   public:
     grower(const weber_penn_parameters& parameters, std::uint32_t seed, std::size_t most)
@@ -690,9 +695,10 @@ class grower {
 ///
 /// Errors (`bad_input`, naming the parameter and its value): NaN, a negative count, a value out of
 /// range, no trunk, or numbers that would make more than `most` segments or 1e9 m.
-[[nodiscard]] inline result<std::vector<segment>> grow(const weber_penn_parameters& parameters,
-                                                       std::uint32_t seed,
-                                                       std::size_t most = default_most_segments) {
+template <class = when_used>
+[[nodiscard]] result<std::vector<segment>> grow(const weber_penn_parameters& parameters,
+                                                std::uint32_t seed,
+                                                std::size_t most = default_most_segments) {
     if (std::string complaint = detail::weber_penn::complaint_of(parameters); !complaint.empty())
         return fail(error_code::bad_input, std::move(complaint));
     const auto limit = static_cast<double>(most);
@@ -702,7 +708,7 @@ class grower {
                     "These tree parameters could make about " +
                         detail::weber_penn::value_text(std::floor(estimate)) +
                         " segments; expected at most " + std::to_string(most) + ".");
-    return detail::weber_penn::grower(parameters, seed, most).grow();
+    return detail::weber_penn::grower<>(parameters, seed, most).grow();
 }
 
 } // namespace skybark::trees

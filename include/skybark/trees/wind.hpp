@@ -19,6 +19,7 @@
 //  - a kernel of one's own that writes the air on the device: anything that models `wind<W, B>`.
 
 #include <skybark/core/backend.hpp>
+#include <skybark/core/when_used.hpp>
 #include <skybark/kernels/grid_wind.hpp>
 #include <skybark/kernels/wave_wind.hpp>
 #include <skybark/kernels/wind_load.hpp>
@@ -38,7 +39,8 @@ concept wind = backend<B> && requires(W& w, const W& c, typename B::recorder& re
 };
 
 /// The middles of the segments at rest.
-[[nodiscard]] inline std::vector<glm::vec3> segment_middles(const skeleton& of) {
+template <class = when_used>
+[[nodiscard]] std::vector<glm::vec3> segment_middles(const skeleton& of) {
     std::vector<glm::vec3> middles(of.size());
     for (std::size_t i = 0; i < of.size(); ++i) {
         middles[i] = of.position[i] + of.orientation[i] * glm::vec3(0, of.length[i] / 2, 0);
@@ -50,9 +52,10 @@ namespace detail {
 
 /// Places as the kernels read them, w: the factor of the mean wind there. Errors: bad_input where
 /// one is not a number or farther than 1e6 m from the origin; out_of_memory where they don't fit.
-[[nodiscard]] inline result<std::vector<glm::vec4>> wind_places(std::span<const glm::vec3> places,
-                                                                const mean_profile& profile,
-                                                                const device_limits& limits) {
+template <class = when_used>
+[[nodiscard]] result<std::vector<glm::vec4>> wind_places(std::span<const glm::vec3> places,
+                                                         const mean_profile& profile,
+                                                         const device_limits& limits) {
     constexpr float most = 1e6f;
     if (places.size() > limits.max_buffer_bytes / sizeof(glm::vec4) ||
         places.size() >= 0xffffffffull) {
@@ -94,7 +97,8 @@ void map_all(typename B::recorder& to, const K& kernel, const bindings<B, K>& bu
     }
 }
 
-[[nodiscard]] inline std::uint32_t longest_range(const device_limits& limits) {
+template <class = when_used>
+[[nodiscard]] std::uint32_t longest_range(const device_limits& limits) {
     return static_cast<std::uint32_t>(
         std::clamp<std::uint64_t>(limits.max_elements, 1, 0xffffffffu));
 }

@@ -14,6 +14,7 @@
 // wood density" (American Journal of Botany 97, 2010); Moore and Maguire, "Natural sway frequencies
 // and damping ratios of trees" (Trees 18, 2004).
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/kernels/sway_records.hpp>
 #include <skybark/trees/skeleton.hpp>
 
@@ -54,6 +55,7 @@ namespace detail {
 }
 
 /// Builds the layout, all in double precision.
+template <class = when_used>
 class sway_layout_builder {
   public:
     sway_layout_builder(const skeleton& from, const wood& material, std::span<const float> leaves)
@@ -259,9 +261,10 @@ class sway_layout_builder {
 
 /// The joints that `sway` works on. `leaf_mass`: kg that each segment carries beyond its wood,
 /// spread along it; empty, or one entry a segment. Linear time.
-[[nodiscard]] inline sway_layout layout_sway(const skeleton& from, const wood& material = {},
-                                             std::span<const float> leaf_mass = {}) {
-    return detail::sway_layout_builder(from, material, leaf_mass).build();
+template <class = when_used>
+[[nodiscard]] sway_layout layout_sway(const skeleton& from, const wood& material = {},
+                                      std::span<const float> leaf_mass = {}) {
+    return detail::sway_layout_builder<>(from, material, leaf_mass).build();
 }
 
 } // namespace skybark::trees
