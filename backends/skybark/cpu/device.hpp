@@ -4,6 +4,7 @@
 // number of threads.
 
 #include <skybark/core/backend.hpp>
+#include <skybark/core/when_used.hpp>
 #include <skybark/cpu/bundle.hpp>
 #include <skybark/cpu/jobs.hpp>
 #include <skybark/cpu/layers.hpp>
@@ -67,6 +68,7 @@ class device {
     [[nodiscard]] device_traffic traffic() const noexcept { return traffic_; }
     [[nodiscard]] device_usage usage() const noexcept { return source_->usage; }
 
+    template <class = when_used>
     [[nodiscard]] result<buffer> create_buffer(std::uint64_t bytes) {
         detail::memory memory =
             bytes <= limits_.max_buffer_bytes ? allocate("a buffer", bytes) : nullptr;
@@ -78,6 +80,7 @@ class device {
         return buffer(std::move(memory), bytes);
     }
 
+    template <class = when_used>
     [[nodiscard]] result<image> create_image(image_description what) {
         const std::string size = std::to_string(what.width) + " x " + std::to_string(what.height);
         if (what.width == 0 || what.height == 0 ||
@@ -98,6 +101,7 @@ class device {
     }
 
     /// Fails where the volume is larger than the limits or the machine's memory.
+    template <class = when_used>
     [[nodiscard]] result<volume> create_volume(volume_description what) {
         const std::string sides = std::to_string(what.width) + " x " + std::to_string(what.height) +
                                   " x " + std::to_string(what.depth);
@@ -378,6 +382,7 @@ class recorder {
         });
     }
 
+    template <class = when_used>
     void resolve(const ray_bundle& bundle, const bundle_work<device>& work) {
         const zone here(device_->hooks(), "resolve");
         if (going() && !resolve_bundle(*device_, device_->bundle_, bundle, work)) {
@@ -458,6 +463,7 @@ class recorder {
         });
     }
 
+    template <class = when_used>
     void scan(const volume& from, const volume& to, const volume_scan& how) {
         const zone here(device_->hooks(), "scan volume");
         if (going()) {
@@ -465,6 +471,7 @@ class recorder {
         }
     }
 
+    template <class = when_used>
     void scan(const buffer_view<device>& words, const buffer_view<device>& total) {
         const zone here(device_->hooks(), "scan");
         std::uint32_t sum = 0;
@@ -474,11 +481,13 @@ class recorder {
         std::memcpy(total.buffer->data() + total.offset, &sum, sizeof sum);
     }
 
+    template <class = when_used>
     void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
               std::uint32_t key_bits = 32) {
         sort_first(keys, values, std::numeric_limits<std::uint32_t>::max(), key_bits);
     }
 
+    template <class = when_used>
     void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
               const counted<device>& pairs, std::uint32_t key_bits = 32) {
         sort_first(keys, values, length_of(pairs), key_bits);
@@ -498,6 +507,7 @@ class recorder {
         return records_of<device, std::span<std::uint32_t>>(view);
     }
 
+    template <class = when_used>
     void sort_first(const buffer_view<device>& keys, const buffer_view<device>& values,
                     std::uint64_t most, std::uint32_t key_bits) {
         const zone here(device_->hooks(), "sort");

@@ -536,7 +536,8 @@ void recorder::peel(const K& kernel, const bindings<device, K>& buffers, range t
     });
 }
 
-inline void recorder::resolve(const ray_bundle& bundle, const bundle_work<device>& work) {
+template <class>
+void recorder::resolve(const ray_bundle& bundle, const bundle_work<device>& work) {
     assert(work.hits.size / sizeof(gather_hit) >= work.samples.size / sizeof(gather_sample) &&
            "too few hits for samples");
     attempt("resolve", [&] {
@@ -548,16 +549,18 @@ inline void recorder::resolve(const ray_bundle& bundle, const bundle_work<device
 
 // ---- words --------------------------------------------------------------------------------------
 
-inline void recorder::scan(const buffer_view<device>& words, const buffer_view<device>& total) {
+template <class>
+void recorder::scan(const buffer_view<device>& words, const buffer_view<device>& total) {
     assert(total.size >= 4 && "no room for the sum of all words");
     attempt("scan", [&] {
         return detail::scan_words(*context_, detail::bound(words), detail::bound(total));
     });
 }
 
-inline void recorder::sort_pairs(const buffer_view<device>& keys, const buffer_view<device>& values,
-                                 std::uint32_t limit, const buffer_view<device>& length,
-                                 std::uint32_t key_bits) {
+template <class>
+void recorder::sort_pairs(const buffer_view<device>& keys, const buffer_view<device>& values,
+                          std::uint32_t limit, const buffer_view<device>& length,
+                          std::uint32_t key_bits) {
     attempt("sort", [&] {
         const std::uint64_t room = std::min(keys.size, values.size) / 4;
         const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(room, limit));
@@ -566,28 +569,33 @@ inline void recorder::sort_pairs(const buffer_view<device>& keys, const buffer_v
     });
 }
 
-inline void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values) {
+template <class>
+void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values) {
     sort_pairs(keys, values, 0xffffffffu, {}, detail::word_bits);
 }
 
-inline void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values,
-                           const counted<device>& pairs) {
+template <class>
+void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+                    const counted<device>& pairs) {
     sort_pairs(keys, values, pairs.limit, pairs.count, detail::word_bits);
 }
 
-inline void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values,
-                           std::uint32_t key_bits) {
+template <class>
+void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+                    std::uint32_t key_bits) {
     sort_pairs(keys, values, 0xffffffffu, {}, key_bits);
 }
 
-inline void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values,
-                           const counted<device>& pairs, std::uint32_t key_bits) {
+template <class>
+void recorder::sort(const buffer_view<device>& keys, const buffer_view<device>& values,
+                    const counted<device>& pairs, std::uint32_t key_bits) {
     sort_pairs(keys, values, pairs.limit, pairs.count, key_bits);
 }
 
 // ---- volumes ------------------------------------------------------------------------------------
 
-inline void recorder::scan(const volume& from, const volume& into, const volume_scan& how) {
+template <class>
+void recorder::scan(const volume& from, const volume& into, const volume_scan& how) {
     attempt("scan volume", [&] {
         return detail::scan_volume(*context_, {from.name(), from.description()},
                                    {into.name(), into.description()}, how);

@@ -13,6 +13,7 @@
 // Each restores what it changed before it returns. A memory barrier ends each, so that whatever
 // comes next, here or in the caller's own code, sees what was written.
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/opengl/context.hpp>
 #include <skybark/opengl/state.hpp>
 
@@ -50,14 +51,16 @@ inline constexpr std::uint32_t target_unit = 0;
     return std::uint32_t{1} << binding;
 }
 
-inline void bind(context& c, gl::token target, std::uint32_t binding, const bound_range& range) {
+template <class = when_used>
+void bind(context& c, gl::token target, std::uint32_t binding, const bound_range& range) {
     // Binding no bytes is an error in OpenGL, and nobody reads what stands there instead.
     const bound_range none{c.objects.scratch, 0, 16};
     const bound_range& used = range.buffer == 0 || range.size == 0 ? none : range;
     c.gl.bind_buffers_range(target, binding, 1, &used.buffer, &used.offset, &used.size);
 }
 
-inline void bind_kernel(context& c, const kernel_call& call) {
+template <class = when_used>
+void bind_kernel(context& c, const kernel_call& call) {
     for (std::uint32_t i = 0; i < call.buffers.size(); ++i) {
         bind(c, gl::shader_storage_buffer, i, call.buffers[i]);
     }
@@ -75,7 +78,8 @@ class saved_volumes {
     saved_image_units targets_;
 };
 
-inline void bind_volumes(context& c, const kernel_call& call) {
+template <class = when_used>
+void bind_volumes(context& c, const kernel_call& call) {
     for (std::uint32_t i = 0; i < call.volumes.size(); ++i) {
         c.gl.active_texture(gl::texture0 + volume_unit + i);
         c.gl.bind_texture(gl::texture_3d, call.volumes[i]);
@@ -87,8 +91,9 @@ inline void bind_volumes(context& c, const kernel_call& call) {
     }
 }
 
-inline void bind_parameters(context& c, const std::array<std::uint32_t, 4>& header,
-                            std::span<const std::byte> kernel) {
+template <class = when_used>
+void bind_parameters(context& c, const std::array<std::uint32_t, 4>& header,
+                     std::span<const std::byte> kernel) {
     bind(c, gl::uniform_buffer, 0, c.write_parameters(header, kernel));
 }
 
@@ -106,8 +111,9 @@ struct indirect_call {
 
 /// Leaves an indirect call's arguments in `objects.arguments`; changes the program, the uniform
 /// buffer and the storage buffers 9 and 10.
-[[nodiscard]] inline result<void> write_arguments(context& c, const indirect_call& call,
-                                                  const bound_range& length) {
+template <class = when_used>
+[[nodiscard]] result<void> write_arguments(context& c, const indirect_call& call,
+                                           const bound_range& length) {
     const shader_stage stages[] = {{gl::compute_shader, arguments_comp}};
     const auto program = c.find_program(stages);
     if (!program) {
@@ -127,27 +133,31 @@ struct indirect_call {
 // ---- map ----------------------------------------------------------------------------------------
 
 /// So many groups of the program; beyond 65,535 they go into the second dimension.
-inline void dispatch(context& c, gl::handle program, std::uint32_t groups) {
+template <class = when_used>
+void dispatch(context& c, gl::handle program, std::uint32_t groups) {
     const std::uint32_t columns = std::min(groups, 65535u);
     c.gl.use_program(program);
     c.gl.dispatch_compute(columns, (groups + columns - 1) / columns, 1);
     c.gl.memory_barrier(gl::all_barrier_bits);
 }
 
-inline void dispatch_map(context& c, gl::handle program, const kernel_call& call, range elements) {
+template <class = when_used>
+void dispatch_map(context& c, gl::handle program, const kernel_call& call, range elements) {
     bind_parameters(c, {elements.first, elements.count, 0, 0}, call.parameters);
     dispatch(c, program, elements.count / 64 + (elements.count % 64 != 0 ? 1 : 0));
 }
 
 /// As many groups as `objects.arguments` says.
-inline void dispatch_indirect(context& c, gl::handle program) {
+template <class = when_used>
+void dispatch_indirect(context& c, gl::handle program) {
     c.gl.use_program(program);
     c.gl.dispatch_compute_indirect(0);
     c.gl.memory_barrier(gl::all_barrier_bits);
 }
 
-[[nodiscard]] inline result<void> map(context& c, std::string_view text, const kernel_call& call,
-                                      const element_range& elements) {
+template <class = when_used>
+[[nodiscard]] result<void> map(context& c, std::string_view text, const kernel_call& call,
+                               const element_range& elements) {
     const shader_stage stages[] = {{gl::compute_shader, text}};
     const auto program = c.find_program(stages);
     if (!program || elements.count == 0) {
@@ -198,9 +208,9 @@ inline constexpr std::uint32_t max_rounds = 60000;
     return i;
 }
 
-[[nodiscard]] inline result<void> map_levels(context& c, std::string_view one,
-                                             std::string_view many, const kernel_call& call,
-                                             std::span<const range> ranges) {
+template <class = when_used>
+[[nodiscard]] result<void> map_levels(context& c, std::string_view one, std::string_view many,
+                                      const kernel_call& call, std::span<const range> ranges) {
     const shader_stage one_stages[] = {{gl::compute_shader, one}};
     const shader_stage many_stages[] = {{gl::compute_shader, many}};
     const auto one_program = c.find_program(one_stages);
@@ -300,7 +310,8 @@ struct expansion {
     std::uint64_t points_a_draw = max_points; ///< more are drawn by several draws
 };
 
-[[nodiscard]] inline result<void> require_free_queries(const gl::functions& gl) {
+template <class = when_used>
+[[nodiscard]] result<void> require_free_queries(const gl::functions& gl) {
     for (const gl::token target :
          {gl::transform_feedback_primitives_written, gl::primitives_generated}) {
         int active = 0;
@@ -315,9 +326,9 @@ struct expansion {
 }
 
 /// Draws the points of all elements, chunk by chunk, into the bound transform feedback.
-[[nodiscard]] inline result<void> feed_points(context& c, gl::handle program,
-                                              const kernel_call& call,
-                                              const element_range& elements, const expansion& out) {
+template <class = when_used>
+[[nodiscard]] result<void> feed_points(context& c, gl::handle program, const kernel_call& call,
+                                       const element_range& elements, const expansion& out) {
     const std::uint64_t parts = out.parts.count;
     const auto chunk = static_cast<std::uint32_t>(
         std::clamp<std::uint64_t>(out.points_a_draw / parts, 1, elements.count));
@@ -357,8 +368,9 @@ struct expansion {
     return {};
 }
 
-[[nodiscard]] inline result<void> expand(context& c, const kernel_call& call,
-                                         const element_range& elements, const expansion& out) {
+template <class = when_used>
+[[nodiscard]] result<void> expand(context& c, const kernel_call& call,
+                                  const element_range& elements, const expansion& out) {
     const shader_stage stages[] = {{gl::vertex_shader, out.vertex_text},
                                    {gl::geometry_shader, out.geometry_text}};
     const auto program = c.find_program(stages, out.parts.max_vertices);
@@ -453,7 +465,8 @@ inline void set(const gl::functions& gl, gl::token capability, bool on) {
 
 /// Clip space has y up and 0 ≤ z ≤ w; row 0 of the target is the top; fronts wind counter-clockwise
 /// in clip space, whichever way rows are counted.
-inline void set_raster(const gl::functions& gl, const draw_call& call) {
+template <class = when_used>
+void set_raster(const gl::functions& gl, const draw_call& call) {
     const draw_state& state = call.state;
     gl.clip_control(gl::upper_left, gl::zero_to_one);
     gl.viewport_indexed(0, 0, 0, static_cast<float>(call.width), static_cast<float>(call.height));
@@ -474,7 +487,8 @@ inline void set_raster(const gl::functions& gl, const draw_call& call) {
 
 /// The same for pixels that are numbers: all are written, and row 0 of the target is at clip y =
 /// −1.
-inline void set_pixel_raster(const gl::functions& gl, const glm::uvec2& size, bool blend) {
+template <class = when_used>
+void set_pixel_raster(const gl::functions& gl, const glm::uvec2& size, bool blend) {
     gl.clip_control(gl::lower_left, gl::zero_to_one);
     gl.viewport_indexed(0, 0, 0, static_cast<float>(size.x), static_cast<float>(size.y));
     gl.depth_range_indexed(0, 0, 1);
@@ -488,7 +502,8 @@ inline void set_pixel_raster(const gl::functions& gl, const glm::uvec2& size, bo
     gl.blend_equation_separate_i(0, gl::func_add, gl::func_add);
 }
 
-inline void clear(context& c, const draw_call& call) {
+template <class = when_used>
+void clear(context& c, const draw_call& call) {
     c.gl.depth_mask(1);
     if (call.color != 0 && call.clear_color) {
         const glm::vec4& v = *call.clear_color;
@@ -501,7 +516,8 @@ inline void clear(context& c, const draw_call& call) {
     c.gl.depth_mask(static_cast<gl::boolean>(call.state.depth_write));
 }
 
-inline void bind_images(context& c, std::span<const image_binding> images) {
+template <class = when_used>
+void bind_images(context& c, std::span<const image_binding> images) {
     for (std::size_t i = 0; i < images.size(); ++i) {
         const std::size_t sampler = (images[i].linear ? 2u : 0u) + (images[i].repeat ? 1u : 0u);
         c.gl.active_texture(gl::texture0 + static_cast<gl::token>(i));
@@ -510,7 +526,8 @@ inline void bind_images(context& c, std::span<const image_binding> images) {
     }
 }
 
-inline void draw_triangles(context& c, const draw_call& call) {
+template <class = when_used>
+void draw_triangles(context& c, const draw_call& call) {
     const bool indexed = call.indices.buffer != 0;
     const bool indirect = call.length.buffer != 0;
     // An element buffer has no offset of its own: the first index carries it.
@@ -530,7 +547,8 @@ inline void draw_triangles(context& c, const draw_call& call) {
 }
 
 /// The arguments of a draw whose length the device knows.
-[[nodiscard]] inline indirect_call draw_arguments(const draw_call& call) {
+template <class = when_used>
+[[nodiscard]] indirect_call draw_arguments(const draw_call& call) {
     indirect_call arguments;
     arguments.each = 3;
     arguments.most = 0xffffffffu / 3;
@@ -551,8 +569,8 @@ inline void draw_triangles(context& c, const draw_call& call) {
     return arguments;
 }
 
-[[nodiscard]] inline result<void> draw(context& c, const kernel_call& kernel,
-                                       const draw_call& call) {
+template <class = when_used>
+[[nodiscard]] result<void> draw(context& c, const kernel_call& kernel, const draw_call& call) {
     const shader_stage stages[] = {{gl::vertex_shader, call.vertex_text},
                                    {gl::fragment_shader, call.fragment_text}};
     const auto program = c.find_program(stages);

@@ -3,6 +3,7 @@
 // the caller's views. What is drawn into is kept by the context: peels of the same size allocate
 // nothing.
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/opengl/patterns.hpp>
 #include <skybark/opengl/programs/own_peel.hpp>
 #include <skybark/opengl/programs/own_peeled.hpp>
@@ -27,7 +28,8 @@ inline constexpr std::uint32_t peel_group = 256; ///< pixels
 inline constexpr std::uint32_t most_drawn_triangles = 0x7fffffffu / 3;
 
 /// The farthest fragments stay. Depths begin at 0, so that fragments of depth 0 are not drawn.
-inline void begin_layer(context& c, const glm::uvec2& size) {
+template <class = when_used>
+void begin_layer(context& c, const glm::uvec2& size) {
     const gl::handle frame = c.objects.layer.frame;
     c.gl.bind_framebuffer(gl::draw_framebuffer, frame);
     set_pixel_raster(c.gl, size, false);
@@ -40,8 +42,9 @@ inline void begin_layer(context& c, const glm::uvec2& size) {
     c.gl.clear_named_framebuffer(frame, gl::depth, 0, &farthest);
 }
 
-inline void draw_layer(context& c, gl::handle program, const kernel_call& kernel,
-                       const range& triangles, std::uint32_t width) {
+template <class = when_used>
+void draw_layer(context& c, gl::handle program, const kernel_call& kernel, const range& triangles,
+                std::uint32_t width) {
     c.gl.bind_vertex_array(c.objects.vertex_array);
     c.gl.use_program(program);
     for (std::uint32_t done = 0; done < triangles.count;) {
@@ -54,7 +57,8 @@ inline void draw_layer(context& c, gl::handle program, const kernel_call& kernel
 }
 
 /// Pixels go to the caller's views.
-inline void take_layer(context& c, gl::handle program, const peel_call& call) {
+template <class = when_used>
+void take_layer(context& c, gl::handle program, const peel_call& call) {
     const std::uint32_t pixels = call.size.x * call.size.y;
     bind_parameters(c, {call.size.x, pixels, 0, 0}, {});
     bind(c, gl::shader_storage_buffer, peel_triangle_binding, call.triangle);
@@ -65,8 +69,9 @@ inline void take_layer(context& c, gl::handle program, const peel_call& call) {
     dispatch(c, program, (pixels - 1) / peel_group + 1);
 }
 
-[[nodiscard]] inline result<void> peel(context& c, const kernel_call& kernel,
-                                       const range& triangles, const peel_call& call) {
+template <class = when_used>
+[[nodiscard]] result<void> peel(context& c, const kernel_call& kernel, const range& triangles,
+                                const peel_call& call) {
     const shader_stage draw_stages[] = {{gl::vertex_shader, call.vertex_text},
                                         {gl::fragment_shader, peel_frag}};
     const shader_stage take_stages[] = {{gl::compute_shader, peeled_comp}};

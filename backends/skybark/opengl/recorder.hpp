@@ -5,6 +5,7 @@
 // pattern is in the context's stream and every state of the caller's is as it was. The first error
 // is kept and what follows it is ignored, until `device::submit` tells.
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/opengl/buffer.hpp>
 #include <skybark/opengl/drawn_sums.hpp>
 #include <skybark/opengl/image.hpp>
@@ -64,21 +65,28 @@ class recorder {
               const peeled_layer<device>& layer);
 
     /// What each sample meets first along a bundle of rays, or against it. See resolve.hpp.
+    template <class = when_used>
     void resolve(const ray_bundle& bundle, const bundle_work<device>& work);
 
     /// Running sums of words in place, the sum of all to the first word of `total`.
+    template <class = when_used>
     void scan(const buffer_view<device>& words, const buffer_view<device>& total);
     /// As many pairs as both views have, or `written` of a count_record, at most `pairs.limit`.
+    template <class = when_used>
     void sort(const buffer_view<device>& keys, const buffer_view<device>& values);
+    template <class = when_used>
     void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
               const counted<device>& pairs);
     /// The same for keys below 2^key_bits, in a pass for every four bits (an even number of them).
+    template <class = when_used>
     void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
               std::uint32_t key_bits);
+    template <class = when_used>
     void sort(const buffer_view<device>& keys, const buffer_view<device>& values,
               const counted<device>& pairs, std::uint32_t key_bits);
 
     /// A running sum along an axis of a volume, into another one of the same size.
+    template <class = when_used>
     void scan(const volume& from, const volume& into, const volume_scan& how);
 
     /// Adds every element's slabs to an int32 volume. The drawn routes are exact for any number of
@@ -133,6 +141,7 @@ class recorder {
                           const image_bindings<device, K>& images,
                           const draw_geometry<device>& geometry, const draw_target<device>& target,
                           const draw_state& state);
+    template <class = when_used>
     void sort_pairs(const buffer_view<device>& keys, const buffer_view<device>& values,
                     std::uint32_t limit, const buffer_view<device>& length, std::uint32_t key_bits);
 

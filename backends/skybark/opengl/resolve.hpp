@@ -4,6 +4,7 @@
 // shaders/programs/resolve.glsl. What is needed besides is kept by the context, at most 148
 // bytes a triangle of a slice and 4 a cell, and grows where it must.
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/opengl/programs/own_resolve_count.hpp>
 #include <skybark/opengl/programs/own_resolve_fill.hpp>
 #include <skybark/opengl/programs/own_resolve_hits.hpp>
@@ -54,7 +55,8 @@ struct resolve_programs {
     gl::handle hits = 0;
 };
 
-[[nodiscard]] inline result<resolve_programs> find_resolve_programs(context& c, bool holes) {
+template <class = when_used>
+[[nodiscard]] result<resolve_programs> find_resolve_programs(context& c, bool holes) {
     resolve_programs found;
     for (const auto& [text, program] :
          {std::pair{resolve_count_comp, &found.count}, std::pair{resolve_fill_comp, &found.fill},
@@ -88,8 +90,9 @@ struct resolve_scratch {
     bound_range entries;
 };
 
-[[nodiscard]] inline result<resolve_scratch> size_resolve(context& c, std::uint32_t triangles,
-                                                          std::uint32_t side) {
+template <class = when_used>
+[[nodiscard]] result<resolve_scratch> size_resolve(context& c, std::uint32_t triangles,
+                                                   std::uint32_t side) {
     resolve_objects& objects = c.objects.resolve;
     const std::uint64_t cells = (4 * std::uint64_t{side} * side - 1) / 3 + 1;
     const std::uint64_t words = aligned(c, 16);
@@ -111,19 +114,21 @@ struct resolve_scratch {
                            part_of(objects.entries, 0, entries)};
 }
 
-inline void clear_words(context& c, const bound_range& words) {
+template <class = when_used>
+void clear_words(context& c, const bound_range& words) {
     c.gl.clear_named_buffer_sub_data(words.buffer, gl::r32ui, words.offset, words.size,
                                      gl::red_integer, gl::unsigned_int, nullptr);
 }
 
-inline void bind_storage(context& c,
-                         std::initializer_list<std::pair<std::uint32_t, bound_range>> bound) {
+template <class = when_used>
+void bind_storage(context& c, std::initializer_list<std::pair<std::uint32_t, bound_range>> bound) {
     for (const auto& [binding, range] : bound) {
         bind(c, gl::shader_storage_buffer, binding, range);
     }
 }
 
-inline void bind_texel_buffer(context& c, std::uint32_t unit, gl::handle texture) {
+template <class = when_used>
+void bind_texel_buffer(context& c, std::uint32_t unit, gl::handle texture) {
     c.gl.active_texture(gl::texture0 + unit);
     c.gl.bind_texture(gl::texture_target_buffer, texture);
 }
@@ -134,10 +139,10 @@ inline void bind_texel_buffer(context& c, std::uint32_t unit, gl::handle texture
 }
 
 /// A slice of the triangles goes into the grids.
-[[nodiscard]] inline result<void> sort_into_grids(context& c, const resolve_programs& programs,
-                                                  const resolve_call& call,
-                                                  const resolve_scratch& scratch,
-                                                  const resolve_parameters& parameters) {
+template <class = when_used>
+[[nodiscard]] result<void> sort_into_grids(context& c, const resolve_programs& programs,
+                                           const resolve_call& call, const resolve_scratch& scratch,
+                                           const resolve_parameters& parameters) {
     const auto bytes = std::as_bytes(std::span(&parameters, 1));
     clear_words(c, scratch.starts);
     clear_words(c, scratch.levels);
@@ -159,11 +164,10 @@ inline void bind_texel_buffer(context& c, std::uint32_t unit, gl::handle texture
 
 /// Samples look at the slice: at the first triangles of their cells, and those that have more, at
 /// the others.
-[[nodiscard]] inline result<void> look_at_grids(context& c, const resolve_programs& programs,
-                                                const resolve_call& call,
-                                                const resolve_scratch& scratch,
-                                                resolve_parameters parameters,
-                                                std::uint32_t samples) {
+template <class = when_used>
+[[nodiscard]] result<void> look_at_grids(context& c, const resolve_programs& programs,
+                                         const resolve_call& call, const resolve_scratch& scratch,
+                                         resolve_parameters parameters, std::uint32_t samples) {
     const auto bytes = std::as_bytes(std::span(&parameters, 1));
     const auto bind_lists = [&](const bound_range& length) {
         bind_storage(c, {{0, call.samples},
@@ -195,7 +199,8 @@ inline void bind_texel_buffer(context& c, std::uint32_t unit, gl::handle texture
     return {};
 }
 
-[[nodiscard]] inline result<void> resolve(context& c, const resolve_call& call) {
+template <class = when_used>
+[[nodiscard]] result<void> resolve(context& c, const resolve_call& call) {
     const auto programs = find_resolve_programs(c, call.alpha.size != 0);
     if (!programs) {
         return failure(programs.error());

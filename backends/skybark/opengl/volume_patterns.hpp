@@ -2,6 +2,7 @@
 // The patterns of volumes that are computed: accumulations by atomic additions, running sums along
 // an axis, and maps over voxels. Drawn accumulations are in drawn_sums.hpp.
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/opengl/patterns.hpp>
 #include <skybark/opengl/programs/own_scan_float32_float16.hpp>
 #include <skybark/opengl/programs/own_scan_float32_float32.hpp>
@@ -149,8 +150,9 @@ struct slab_plan {
     return into == volume_format::float32 ? scan_float32_float32_comp : scan_float32_float16_comp;
 }
 
-[[nodiscard]] inline result<void> scan_volume(context& c, const bound_volume& from,
-                                              const bound_volume& into, const volume_scan& how) {
+template <class = when_used>
+[[nodiscard]] result<void> scan_volume(context& c, const bound_volume& from,
+                                       const bound_volume& into, const volume_scan& how) {
     assert(from.texture != into.texture && "a scan within one volume");
     assert(from.size.width == into.size.width && from.size.height == into.size.height &&
            from.size.depth == into.size.depth && "a scan into a volume of another size");
@@ -187,8 +189,9 @@ struct slab_plan {
 
 // ---- map_voxels ---------------------------------------------------------------------------------
 
-[[nodiscard]] inline result<void> map_voxels(context& c, std::string_view text,
-                                             const kernel_call& call, const glm::uvec3& extent) {
+template <class = when_used>
+[[nodiscard]] result<void> map_voxels(context& c, std::string_view text, const kernel_call& call,
+                                      const glm::uvec3& extent) {
     assert(extent.z <= 65535 && "more layers than can be dispatched");
     const shader_stage stages[] = {{gl::compute_shader, text}};
     const auto program = c.find_program(stages);

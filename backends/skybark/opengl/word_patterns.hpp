@@ -2,6 +2,7 @@
 // Running sums of words, and sorting by them. What is needed besides is kept by the context, and
 // grows where it must.
 
+#include <skybark/core/when_used.hpp>
 #include <skybark/opengl/patterns.hpp>
 #include <skybark/opengl/programs/own_scan.hpp>
 #include <skybark/opengl/programs/own_scan_add.hpp>
@@ -34,8 +35,9 @@ inline constexpr std::uint32_t scan_mask =
 }
 
 /// One of the two programs of a scan: `words` in blocks, `sums` one for each of them.
-inline void dispatch_scan(context& c, gl::handle program, const bound_range& words,
-                          const bound_range& sums, std::uint64_t words_a_group) {
+template <class = when_used>
+void dispatch_scan(context& c, gl::handle program, const bound_range& words,
+                   const bound_range& sums, std::uint64_t words_a_group) {
     const std::uint64_t count = words_of(words);
     bind_parameters(c, {0, static_cast<std::uint32_t>(count), 0, 0}, {});
     bind(c, gl::shader_storage_buffer, storage_8, words);
@@ -47,8 +49,9 @@ inline void dispatch_scan(context& c, gl::handle program, const bound_range& wor
 }
 
 /// A scan without saved state: changes the program, the uniform buffer and storage buffers 8 to 10.
-[[nodiscard]] inline result<void> scan_blocks(context& c, const bound_range& words,
-                                              const bound_range& total) {
+template <class = when_used>
+[[nodiscard]] result<void> scan_blocks(context& c, const bound_range& words,
+                                       const bound_range& total) {
     const shader_stage scan_stages[] = {{gl::compute_shader, scan_comp}};
     const shader_stage add_stages[] = {{gl::compute_shader, scan_add_comp}};
     const auto scan = c.find_program(scan_stages);
@@ -83,8 +86,9 @@ inline void dispatch_scan(context& c, gl::handle program, const bound_range& wor
     return {};
 }
 
-[[nodiscard]] inline result<void> scan_words(context& c, const bound_range& words,
-                                             const bound_range& total) {
+template <class = when_used>
+[[nodiscard]] result<void> scan_words(context& c, const bound_range& words,
+                                      const bound_range& total) {
     const saved_program saved(c.gl);
     const saved_buffers saved_too(c.gl, scan_mask);
     return scan_blocks(c, words, total);
@@ -103,10 +107,11 @@ struct key_values {
 };
 
 /// By four bits of the keys, from one pair of buffers to another.
-[[nodiscard]] inline result<void> sort_by_digit(context& c, gl::handle count_program,
-                                                gl::handle scatter_program, const key_values& from,
-                                                const key_values& into, const element_range& pairs,
-                                                std::uint32_t shift) {
+template <class = when_used>
+[[nodiscard]] result<void> sort_by_digit(context& c, gl::handle count_program,
+                                         gl::handle scatter_program, const key_values& from,
+                                         const key_values& into, const element_range& pairs,
+                                         std::uint32_t shift) {
     const std::uint32_t blocks = (pairs.count - 1) / sort_block + 1;
     const std::uint64_t bytes = std::uint64_t{sort_digits} * blocks * 4;
     const bound_range counts = part_of(c.objects.sort_counts, 0, bytes);
@@ -133,9 +138,10 @@ struct key_values {
 }
 
 /// `pairs.count` pairs, or as many as the device knows, at most so many; keys are below 2^key_bits.
-[[nodiscard]] inline result<void> sort_pairs(context& c, const bound_range& keys,
-                                             const bound_range& values, const element_range& pairs,
-                                             std::uint32_t key_bits) {
+template <class = when_used>
+[[nodiscard]] result<void> sort_pairs(context& c, const bound_range& keys,
+                                      const bound_range& values, const element_range& pairs,
+                                      std::uint32_t key_bits) {
     const shader_stage count_stages[] = {{gl::compute_shader, sort_count_comp}};
     const shader_stage scatter_stages[] = {{gl::compute_shader, sort_scatter_comp}};
     const auto count = c.find_program(count_stages);
