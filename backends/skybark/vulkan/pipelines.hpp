@@ -14,7 +14,6 @@
 #include <compare>
 #include <map>
 #include <memory>
-#include <tuple>
 #include <vector>
 
 namespace skybark::vulkan {
@@ -169,7 +168,17 @@ class pipeline_cache {
     }
 
   private:
-    using draw_key = std::tuple<const void*, VkFormat, VkFormat, bool, bool, blend_mode, cull_mode>;
+    struct draw_key {
+        const void* vertex;
+        VkFormat color;
+        VkFormat depth;
+        bool depth_test;
+        bool depth_write;
+        blend_mode blend;
+        cull_mode cull;
+
+        [[nodiscard]] auto operator<=>(const draw_key&) const = default;
+    };
 
     /// Names what was made, and logs how long it took, or why it was not.
     template <class Make>
