@@ -36,7 +36,7 @@ std::vector<attenuation_options> every_way(const device_limits& limits,
                     ways.back().polygons = polygons;
                     ways.back().policy = policy;
                     ways.back().route = route;
-                    ways.back().list_bytes = 1 << 18; // several chunks
+                    ways.back().list_bytes = 1 << 15; // two turns or more
                 }
             }
         }
