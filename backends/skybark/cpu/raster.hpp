@@ -4,7 +4,7 @@
 // Positions are rounded to 1/256 of a pixel and the edge functions are integers, so a pixel on a
 // shared edge belongs to exactly one of its triangles (the top-left rule) and the picture does not
 // depend on the number of threads: triangles are set up in parallel, then each band of rows draws
-// all of them in order.
+// all of them in order; blended ones from the front to the back, until nothing shows through.
 
 #include <skybark/core/backend.hpp>
 #include <skybark/cpu/grids.hpp>
@@ -15,6 +15,7 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 namespace skybark::cpu {
@@ -44,6 +45,7 @@ struct raster_scratch {
     const detail::memory_source* source = nullptr;
     detail::scratch_memory clip{source};
     detail::scratch_memory varyings{source};
+    detail::scratch_memory layer{source};
     std::vector<screen_piece> pieces = {};
 };
 
@@ -427,6 +429,294 @@ void clear(Device& device, const draw_target<Device>& target, viewport size) {
 
 } // namespace raster
 
+namespace raster {
+
+/// Blended triangles that leave the depth alone are drawn from the last one to the first, into a
+/// layer of their own that goes over the picture in the end: the same sum, since "over" may be put
+/// in brackets as one likes. So no fragment is shaded of which the picture would show less than
+/// this part: most of a cloud lies behind other parts of it.
+inline constexpr float least_seen = 1.0f / 65536;
+/// Fewer triangles are not worth the layer.
+inline constexpr std::uint32_t least_layered = 512;
+
+/// One draw: batches of triangles are shaded and set up, and then drawn band by band.
+template <class Device, draw_kernel K, class... Spans>
+class drawing {
+  public:
+    drawing(Device& device, raster_scratch& scratch, const K& kernel,
+            const image_bindings<Device, K>& images, const grids& volumes,
+            const draw_geometry<Device>& geometry, const draw_target<Device>& target,
+            draw_state state, const std::tuple<Spans...>& spans)
+        : device_(device), scratch_(scratch), kernel_(kernel), reader_(images, volumes),
+          geometry_(geometry),
+          indices_(records_of<Device, std::span<const std::uint32_t>>(geometry.indices)),
+          color_(target.color), state_(state), spans_(spans) {
+        const image* sized = color_ != nullptr ? color_ : target.depth;
+        size_ = {sized->description().width, sized->description().height};
+        if (target.depth != nullptr) {
+            depth_ = reinterpret_cast<float*>(target.depth->data());
+        }
+        // Each band looks at all triangles: no more of them than the workers need.
+        rows_ = std::max(band_rows, size_.height / (bands_a_worker * device.workers()) + 1);
+    }
+
+    /// False where there is no memory to do it in.
+    [[nodiscard]] bool record(std::uint32_t vertices) {
+        const std::uint32_t triangles = vertices / 3;
+        const std::uint32_t batches = (triangles + batch_triangles - 1) / batch_triangles;
+        const bool is_layered = is_order_free() && triangles >= least_layered;
+        if (is_layered && !begin_layer()) {
+            return false;
+        }
+        for (std::uint32_t i = 0; i < batches; ++i) {
+            const std::uint32_t done = (is_layered ? batches - 1 - i : i) * batch_triangles;
+            if (!shade_vertices(geometry_.first + 3 * done,
+                                std::min(batch_triangles, triangles - done)) ||
+                !set_up_pieces()) {
+                return false;
+            }
+            for_bands([&](std::int32_t first, std::int32_t end) {
+                is_layered ? draw_under(first, end) : draw_over(first, end);
+            });
+        }
+        if (is_layered) {
+            end_layer();
+        }
+        return true;
+    }
+
+  private:
+    using varyings = std::array<glm::vec4, K::varyings>;
+
+    [[nodiscard]] bool is_order_free() const {
+        return state_.blend == blend_mode::alpha && (depth_ == nullptr || !state_.depth_write) &&
+               color_ != nullptr && color_->description().format == image_format::rgba32f;
+    }
+
+    template <class Work>
+    void for_bands(const Work& work) {
+        device_.parallel((size_.height + rows_ - 1) / rows_, [&](std::uint32_t band) {
+            work(static_cast<std::int32_t>(band * rows_),
+                 static_cast<std::int32_t>(std::min((band + 1) * rows_, size_.height)));
+        });
+    }
+
+    [[nodiscard]] std::uint32_t vertex_number(std::uint32_t i) const {
+        return geometry_.base_vertex + (indices_.empty() ? i : indices_[i]);
+    }
+
+    /// Shades each vertex once where the batch's indices are close together, as they are in meshes;
+    /// else once a corner.
+    [[nodiscard]] bool shade_vertices(std::uint32_t first, std::uint32_t triangles) {
+        first_ = first;
+        triangles_ = triangles;
+        std::uint32_t most = 0;
+        least_ = std::numeric_limits<std::uint32_t>::max();
+        for (std::uint32_t i = first; i < first + 3 * triangles; ++i) {
+            least_ = std::min(least_, vertex_number(i));
+            most = std::max(most, vertex_number(i));
+        }
+        shared_ = most - least_ < 3 * triangles;
+        const std::uint32_t vertices = shared_ ? most - least_ + 1 : 3 * triangles;
+        clip_ = scratch_.clip.room_for<glm::vec4>(vertices);
+        shaded_ = scratch_.varyings.room_for<glm::vec4>(std::uint64_t{vertices} * K::varyings);
+        if (clip_ == nullptr || shaded_ == nullptr) {
+            return false;
+        }
+        device_.for_pieces(vertices, 1024, [&](std::uint64_t begin, std::uint64_t n) {
+            for (std::uint64_t v = begin; v < begin + n; ++v) {
+                const auto i = static_cast<std::uint32_t>(v);
+                const std::uint32_t number = shared_ ? least_ + i : vertex_number(first_ + i);
+                varyings out{};
+                clip_[v] = std::apply(
+                    [&](const auto&... spans) { return kernel_.vertex(number, out, spans...); },
+                    spans_);
+                std::copy(out.begin(), out.end(), shaded_ + v * K::varyings);
+            }
+        });
+        return true;
+    }
+
+    [[nodiscard]] bool set_up_pieces() {
+        pieces_ = (triangles_ + piece_triangles - 1) / piece_triangles;
+        // Room for as many as there can be unless some are clipped: later frames need no more.
+        while (scratch_.pieces.size() < pieces_) {
+            scratch_.pieces.push_back(
+                {detail::kept_list<screen_triangle>(scratch_.source, piece_triangles)});
+        }
+        device_.parallel(pieces_, [&](std::uint32_t p) { set_up_piece(p); });
+        for (std::uint32_t p = 0; p < pieces_; ++p) {
+            if (!scratch_.pieces[p].triangles.complete()) {
+                scratch_.pieces.clear();
+                return false;
+            }
+        }
+        return true;
+    }
+
+    void set_up_piece(std::uint32_t p) {
+        screen_piece& piece = scratch_.pieces[p];
+        piece.triangles.clear();
+        const std::uint32_t end = std::min(triangles_, (p + 1) * piece_triangles);
+        for (std::uint32_t t = p * piece_triangles; t < end; ++t) {
+            std::uint32_t vertex[3];
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                vertex[k] = shared_ ? vertex_number(first_ + 3 * t + k) - least_ : 3 * t + k;
+            }
+            set_up(clip_, vertex, size_, state_.cull, piece.triangles);
+        }
+        piece.row_first = std::numeric_limits<std::int32_t>::max();
+        piece.row_end = 0;
+        for (const screen_triangle& t : piece.triangles) {
+            piece.row_first = std::min(piece.row_first, t.row_first);
+            piece.row_end = std::max(piece.row_end, t.row_end);
+        }
+    }
+
+    /// In the order that they come.
+    void draw_over(std::int32_t row_first, std::int32_t row_end) {
+        for (std::uint32_t p = 0; p < pieces_; ++p) {
+            const screen_piece& piece = scratch_.pieces[p];
+            if (piece.row_end <= row_first || piece.row_first >= row_end) {
+                continue;
+            }
+            for (const screen_triangle& t : piece.triangles) {
+                cover(t, row_first, row_end,
+                      [&](std::int64_t x, std::int64_t y, const glm::vec3& b) {
+                          shade_over(t, x, y, b);
+                      });
+            }
+        }
+    }
+
+    /// From the last to the first.
+    void draw_under(std::int32_t row_first, std::int32_t row_end) {
+        for (std::uint32_t p = pieces_; p-- > 0;) {
+            const screen_piece& piece = scratch_.pieces[p];
+            if (piece.row_end <= row_first || piece.row_first >= row_end) {
+                continue;
+            }
+            for (auto t = piece.triangles.end(); t != piece.triangles.begin();) {
+                --t;
+                cover(*t, row_first, row_end,
+                      [&](std::int64_t x, std::int64_t y, const glm::vec3& b) {
+                          shade_under(*t, x, y, b);
+                      });
+            }
+        }
+    }
+
+    [[nodiscard]] std::uint64_t index_of(std::int64_t x, std::int64_t y) const {
+        return static_cast<std::uint64_t>(y) * size_.width + static_cast<std::uint64_t>(x);
+    }
+
+    /// Exact where the triangle is parallel to the screen; rounding never leaves 0 … 1.
+    [[nodiscard]] static float depth_at(const screen_triangle& t, const glm::vec3& b) {
+        return std::clamp(t.z[0] + (t.z[1] - t.z[0]) * b.y + (t.z[2] - t.z[0]) * b.z, 0.0f, 1.0f);
+    }
+
+    [[nodiscard]] bool is_hidden(float z, std::uint64_t index) const {
+        return depth_ != nullptr && state_.depth_test && !(z <= depth_[index]);
+    }
+
+    [[nodiscard]] fragment_output shade(const screen_triangle& t, std::int64_t x, std::int64_t y,
+                                        const glm::vec3& b) const {
+        varyings in;
+        const glm::vec3 w = vertex_weights(t, b);
+        const glm::vec4* corner[3];
+        for (int i = 0; i < 3; ++i) {
+            corner[i] = shaded_ + std::size_t{t.vertex[i]} * K::varyings;
+        }
+        for (std::size_t i = 0; i < K::varyings; ++i) {
+            in[i] = corner[0][i] * w.x + corner[1][i] * w.y + corner[2][i] * w.z;
+        }
+        const glm::vec2 pixel(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+        return std::apply(
+            [&](const auto&... spans) {
+                return kernel_.fragment(in, pixel, t.front, reader_, spans...);
+            },
+            spans_);
+    }
+
+    void shade_over(const screen_triangle& t, std::int64_t x, std::int64_t y, const glm::vec3& b) {
+        const std::uint64_t index = index_of(x, y);
+        const float z = depth_at(t, b);
+        if (is_hidden(z, index)) {
+            return;
+        }
+        const fragment_output out = shade(t, x, y, b);
+        if (!out.keep) {
+            return;
+        }
+        if (depth_ != nullptr && state_.depth_write) {
+            depth_[index] = z;
+        }
+        if (color_ != nullptr) {
+            const bool blend = state_.blend == blend_mode::alpha;
+            store_pixel(*color_, index,
+                        blend ? out.color + load_pixel(*color_, index) * (1.0f - out.color.a)
+                              : out.color);
+        }
+    }
+
+    void shade_under(const screen_triangle& t, std::int64_t x, std::int64_t y, const glm::vec3& b) {
+        const std::uint64_t index = index_of(x, y);
+        glm::vec4& front = layer_[index];
+        const float seen = 1.0f - front.a;
+        if ((seen >= 0.0f && seen < least_seen) || is_hidden(depth_at(t, b), index)) {
+            return;
+        }
+        const fragment_output out = shade(t, x, y, b);
+        if (out.keep) {
+            front = front + out.color * seen;
+        }
+    }
+
+    [[nodiscard]] bool begin_layer() {
+        layer_ = scratch_.layer.room_for<glm::vec4>(std::uint64_t{size_.width} * size_.height);
+        if (layer_ == nullptr) {
+            return false;
+        }
+        for_bands([&](std::int32_t first, std::int32_t end) {
+            std::fill(layer_ + index_of(0, first), layer_ + index_of(0, end), glm::vec4(0));
+        });
+        return true;
+    }
+
+    void end_layer() {
+        for_bands([&](std::int32_t first, std::int32_t end) {
+            for (std::uint64_t i = index_of(0, first); i < index_of(0, end); ++i) {
+                store_pixel(*color_, i, layer_[i] + load_pixel(*color_, i) * (1.0f - layer_[i].a));
+            }
+        });
+    }
+
+    Device& device_;
+    raster_scratch& scratch_;
+    const K& kernel_;
+    image_reader<image_bindings<Device, K>> reader_;
+    const draw_geometry<Device>& geometry_;
+    std::span<const std::uint32_t> indices_;
+    const image* color_;
+    float* depth_ = nullptr;
+    draw_state state_;
+    std::tuple<Spans...> spans_;
+    viewport size_{};
+    std::uint32_t rows_ = 0; ///< of a band
+
+    // The batch that is drawn.
+    std::uint32_t first_ = 0;
+    std::uint32_t triangles_ = 0;
+    std::uint32_t pieces_ = 0;
+    std::uint32_t least_ = 0; ///< number of a vertex
+    bool shared_ = false;
+    glm::vec4* clip_ = nullptr;
+    glm::vec4* shaded_ = nullptr; ///< varyings, vertex by vertex
+    glm::vec4* layer_ = nullptr;  ///< light and opacity of what is in front, a pixel
+};
+
+} // namespace raster
+
 /// Draws triangles with kernel `K`: see the contract in skybark/core/backend.hpp. False where there
 /// is no memory to do it in.
 template <class Device, draw_kernel K, class... Spans>
@@ -434,12 +724,8 @@ template <class Device, draw_kernel K, class... Spans>
                              const image_bindings<Device, K>& images, const grids& volumes,
                              const draw_geometry<Device>& geometry,
                              const draw_target<Device>& target, draw_state state, Spans... spans) {
-    using namespace raster;
-    using varyings = std::array<glm::vec4, K::varyings>;
     const image* sized = target.color != nullptr ? target.color : target.depth;
-    const viewport size{sized->description().width, sized->description().height};
-    clear(device, target, size);
-
+    raster::clear(device, target, {sized->description().width, sized->description().height});
     std::uint32_t count = geometry.count;
     if (geometry.length) {
         count_record length;
@@ -447,133 +733,9 @@ template <class Device, draw_kernel K, class... Spans>
                     sizeof length);
         count = 3 * length.written;
     }
-    const auto indices = records_of<Device, std::span<const std::uint32_t>>(geometry.indices);
-    const auto vertex_number = [&](std::uint32_t i) {
-        return geometry.base_vertex + (indices.empty() ? i : indices[i]);
-    };
-    // Each band looks at all triangles: no more of them than the workers need.
-    const std::uint32_t rows =
-        std::max(band_rows, size.height / (bands_a_worker * device.workers()) + 1);
-    const image_reader reader(images, volumes);
-    glm::vec4* shaded = nullptr; // varyings, vertex by vertex
-    float* const depth =
-        target.depth != nullptr ? reinterpret_cast<float*>(target.depth->data()) : nullptr;
-
-    const auto shade_pixel = [&](const screen_triangle& t, std::int64_t x, std::int64_t y,
-                                 const glm::vec3& b) {
-        const auto index =
-            static_cast<std::uint64_t>(y) * size.width + static_cast<std::uint64_t>(x);
-        // Exact where the triangle is parallel to the screen; rounding never leaves 0 … 1.
-        const float z =
-            std::clamp(t.z[0] + (t.z[1] - t.z[0]) * b.y + (t.z[2] - t.z[0]) * b.z, 0.0f, 1.0f);
-        if (depth != nullptr && state.depth_test && !(z <= depth[index])) {
-            return;
-        }
-        varyings in;
-        const glm::vec3 w = vertex_weights(t, b);
-        const glm::vec4* corner[3];
-        for (int i = 0; i < 3; ++i) {
-            corner[i] = shaded + std::size_t{t.vertex[i]} * K::varyings;
-        }
-        for (std::size_t i = 0; i < K::varyings; ++i) {
-            in[i] = corner[0][i] * w.x + corner[1][i] * w.y + corner[2][i] * w.z;
-        }
-        const glm::vec2 pixel(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-        const fragment_output out = kernel.fragment(in, pixel, t.front, reader, spans...);
-        if (!out.keep) {
-            return;
-        }
-        if (depth != nullptr && state.depth_write) {
-            depth[index] = z;
-        }
-        if (target.color != nullptr) {
-            const bool blend = state.blend == blend_mode::alpha;
-            store_pixel(*target.color, index,
-                        blend ? out.color + load_pixel(*target.color, index) * (1.0f - out.color.a)
-                              : out.color);
-        }
-    };
-
-    for (std::uint64_t done = 0; done + 2 < count; done += 3ull * batch_triangles) {
-        const auto first = static_cast<std::uint32_t>(geometry.first + done);
-        const auto triangles = static_cast<std::uint32_t>(
-            std::min<std::uint64_t>(batch_triangles, (count - done) / 3));
-        // Shade each vertex once where the batch's indices are close together, as they are in
-        // meshes; else once a corner.
-        std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
-        std::uint32_t most = 0;
-        for (std::uint32_t i = first; i < first + 3 * triangles; ++i) {
-            least = std::min(least, vertex_number(i));
-            most = std::max(most, vertex_number(i));
-        }
-        const bool shared = most - least < 3 * triangles;
-        const std::uint32_t vertices = shared ? most - least + 1 : 3 * triangles;
-        auto* const clip = scratch.clip.room_for<glm::vec4>(vertices);
-        shaded = scratch.varyings.room_for<glm::vec4>(std::uint64_t{vertices} * K::varyings);
-        if (clip == nullptr || shaded == nullptr) {
-            return false;
-        }
-        device.for_pieces(vertices, 1024, [&](std::uint64_t begin, std::uint64_t n) {
-            for (std::uint64_t v = begin; v < begin + n; ++v) {
-                const auto i = static_cast<std::uint32_t>(v);
-                varyings out{};
-                clip[v] =
-                    kernel.vertex(shared ? least + i : vertex_number(first + i), out, spans...);
-                std::copy(out.begin(), out.end(), shaded + v * K::varyings);
-            }
-        });
-
-        const std::uint32_t pieces = (triangles + piece_triangles - 1) / piece_triangles;
-        // Room for as many as there can be unless some are clipped: later frames need no more.
-        while (scratch.pieces.size() < pieces) {
-            scratch.pieces.push_back(
-                {detail::kept_list<screen_triangle>(scratch.source, piece_triangles)});
-        }
-        device.parallel(pieces, [&](std::uint32_t p) {
-            screen_piece& piece = scratch.pieces[p];
-            piece.triangles.clear();
-            const std::uint32_t end = std::min(triangles, (p + 1) * piece_triangles);
-            for (std::uint32_t t = p * piece_triangles; t < end; ++t) {
-                std::uint32_t vertex[3];
-                for (std::uint32_t k = 0; k < 3; ++k) {
-                    vertex[k] = shared ? vertex_number(first + 3 * t + k) - least : 3 * t + k;
-                }
-                set_up(clip, vertex, size, state.cull, piece.triangles);
-            }
-            piece.row_first = std::numeric_limits<std::int32_t>::max();
-            piece.row_end = 0;
-            for (const screen_triangle& t : piece.triangles) {
-                piece.row_first = std::min(piece.row_first, t.row_first);
-                piece.row_end = std::max(piece.row_end, t.row_end);
-            }
-        });
-
-        for (std::uint32_t p = 0; p < pieces; ++p) {
-            if (!scratch.pieces[p].triangles.complete()) {
-                scratch.pieces.clear();
-                return false;
-            }
-        }
-        const std::uint32_t bands = (size.height + rows - 1) / rows;
-        device.parallel(bands, [&](std::uint32_t band) {
-            const auto row_first = static_cast<std::int32_t>(band * rows);
-            const auto row_end =
-                static_cast<std::int32_t>(std::min((band + 1) * rows, size.height));
-            for (std::uint32_t p = 0; p < pieces; ++p) {
-                const screen_piece& piece = scratch.pieces[p];
-                if (piece.row_end <= row_first || piece.row_first >= row_end) {
-                    continue;
-                }
-                for (const screen_triangle& t : piece.triangles) {
-                    cover(t, row_first, row_end,
-                          [&](std::int64_t x, std::int64_t y, const glm::vec3& b) {
-                              shade_pixel(t, x, y, b);
-                          });
-                }
-            }
-        });
-    }
-    return true;
+    raster::drawing<Device, K, Spans...> all(device, scratch, kernel, images, volumes, geometry,
+                                             target, state, std::tuple<Spans...>(spans...));
+    return all.record(count);
 }
 
 } // namespace skybark::cpu

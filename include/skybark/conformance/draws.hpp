@@ -400,6 +400,49 @@ void draw_blending(context<B>& c, image_format format) {
     }
 }
 
+/// 600 layers, drawn back to front as smoke is: thin ones on the left, on the right some that hide
+/// what lies behind them. A wall stands among them in the lower half.
+template <backend B>
+void draw_blending_many_layers(context<B>& c) {
+    constexpr std::uint32_t layers = 600;
+    constexpr double wall = 0.4003;
+    easel<B> e(c, {16, 16, image_format::rgba32f}, true);
+    e.target().clear_color = glm::vec4{0.2f, 0.4f, 0.6f, 0.5f};
+    e.draw(rectangle(e.what(), 0, 8, 16, 16, wall, {0.3f, 0.2f, 0.1f, 1}));
+    const picture before = e.color();
+    e.state.blend = blend_mode::alpha;
+    e.state.depth_write = false;
+    vertex_list all;
+    std::vector<glm::dvec4> expected;
+    for (const glm::vec4& pixel : before.pixels) {
+        expected.emplace_back(pixel);
+    }
+    for (std::uint32_t i = 0; i < layers; ++i) {
+        const double depth = 0.9 - 0.8 * i / layers;
+        const bool thick = i % 7 == 0;
+        const auto from = static_cast<std::uint32_t>(thick ? 8 : 0);
+        const float alpha = thick ? 0.6f : 0.004f;
+        const float shade = alpha * static_cast<float>(c.below(256)) / 255;
+        const glm::vec4 layer{shade, 0.5f * shade, alpha - shade, alpha};
+        append(all, rectangle(e.what(), from, 0, 16, 16, depth, layer));
+        for (std::uint32_t k = 0; k < 256; ++k) {
+            const bool behind = k / 16 >= 8 && depth > wall;
+            if (k % 16 >= from && !behind) {
+                expected[k] = glm::dvec4(layer) + (1 - double{layer.w}) * expected[k];
+            }
+        }
+    }
+    e.draw(all);
+    const picture seen = e.color();
+    comparison check = c.compare("channels");
+    for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
+        for (int k = 0; k < 4; ++k) {
+            // 600 roundings of 6e-8, and what may be left out.
+            check.close_to(double{seen.pixels[i][k]}, expected[i][k], 4e-5 + 1.0 / 65536);
+        }
+    }
+}
+
 /// One layer on rgba8: within one step of exact.
 template <backend B>
 void draw_blending_one_layer(context<B>& c) {
@@ -662,6 +705,7 @@ void add_draw_cases(cases<B>& to) {
         add("blend_rgba8", [](C& c) { draw_blending(c, image_format::rgba8); });
         add("blend_rgba32f", [](C& c) { draw_blending(c, image_format::rgba32f); });
         add("blend_one_layer", draw_blending_one_layer<B>);
+        add("blend_many_layers", draw_blending_many_layers<B>);
         add("discard", draw_discard<B>);
         add("fragment_buffer", draw_fragment_buffer<B>);
         add("values_rgba8", [](C& c) { draw_values(c, image_format::rgba8); });

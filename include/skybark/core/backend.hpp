@@ -206,7 +206,9 @@ struct volume_bindings {
 
 enum class blend_mode {
     none,
-    alpha, ///< premultiplied: source + (1 − source alpha) · destination
+    /// Premultiplied: source + (1 − source alpha) · destination. What would show by less than
+    /// 1/65536 behind all that is drawn after it may be left out.
+    alpha,
 };
 enum class cull_mode { none, back }; ///< front faces wind counter-clockwise
 enum class filter_mode { nearest, linear };
