@@ -18,7 +18,7 @@ voxel_slab kernel_slab(uint i, uint s) {
 float kernel_lateral(uint i, int x, int z) {
     return float(boxes[i].low.w + per_x * x + per_z * z);
 }
-float kernel_row(uint i, int y) { return float(boxes[i].high.w * y); }
+float kernel_row(uint i, int y) { return float(boxes[i].high.w * (y + 1)); }
 int kernel_amount(float lateral, float row, float above) {
     return int(lateral + 2.0 * row - above) * factor;
 }

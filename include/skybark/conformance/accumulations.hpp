@@ -51,7 +51,7 @@ inline void add_expected(std::vector<std::int64_t>& sums, glm::ivec3 size,
                 for (std::int64_t x = std::max<std::int64_t>(box.low.x + s, 0);
                      x < std::min(size.x, box.high.x); ++x) {
                     const std::int64_t amount =
-                        box.low.w + with.per_x * x + with.per_z * z + box.high.w * (y - 1);
+                        box.low.w + with.per_x * x + with.per_z * z + box.high.w * y;
                     sums[static_cast<std::size_t>((z * size.y + y) * size.x + x)] +=
                         amount * with.factor;
                 }

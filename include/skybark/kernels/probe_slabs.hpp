@@ -11,7 +11,7 @@ namespace skybark::kernels {
 /// each is smaller than the one before it, and the last ones may be empty.
 struct probe_box {
     glm::ivec4 low{0};  ///< xyz: the first voxel; w: what every voxel of it gets
-    glm::ivec4 high{0}; ///< xyz: one past the last voxel; w: what a voxel gets for each y − 1
+    glm::ivec4 high{0}; ///< xyz: one past the last voxel; w: what a voxel gets besides for each y
 };
 static_assert(sizeof(probe_box) == 32);
 
@@ -44,9 +44,9 @@ struct probe_slabs {
     /// The same.
     [[nodiscard]] float row(std::uint32_t i, std::int32_t y,
                             std::span<const probe_box> boxes) const {
-        return static_cast<float>(boxes[i].high.w * y);
+        return static_cast<float>(boxes[i].high.w * (y + 1));
     }
-    /// 2 w y − w (y + 1) is w (y − 1): what lies above is told from what lies beside or below.
+    /// 2 w (y + 1) − w (y + 2) is w y: a row that is taken for the one above it shows.
     [[nodiscard]] std::int32_t amount(float lateral, float row, float above) const {
         return static_cast<std::int32_t>(lateral + 2 * row - above) * factor;
     }

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 17d93dfffd0dc535429f123cfd4623b27ad92537cf6626fb3a3ac0c858e8e54b
+// sha256 305e2b4f2a4604d8007fddfa29a305857e9ef038e1eb4eab827cd40dfc9998d4
 #pragma once
 
 #include <skybark/kernels/probe_slabs.hpp>
@@ -80,7 +80,7 @@ box.low.z + by);
 float kernel_lateral(uint i, int x, int z) {
 return float(boxes[i].low.w + per_x * x + per_z * z);
 }
-float kernel_row(uint i, int y) { return float(boxes[i].high.w * y); }
+float kernel_row(uint i, int y) { return float(boxes[i].high.w * (y + 1)); }
 int kernel_amount(float lateral, float row, float above) {
 return int(lateral + 2.0 * row - above) * factor;
 }
@@ -140,7 +140,7 @@ for (uint s = first + slot; s < last; s += gl_WorkGroupSize.x / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 4531};
+)glsl", 4537};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define KERNEL_PARAMETERS uint most; int per_x; int per_z; int factor;
@@ -205,7 +205,7 @@ box.low.z + by);
 float kernel_lateral(uint i, int x, int z) {
 return float(boxes[i].low.w + per_x * x + per_z * z);
 }
-float kernel_row(uint i, int y) { return float(boxes[i].high.w * y); }
+float kernel_row(uint i, int y) { return float(boxes[i].high.w * (y + 1)); }
 int kernel_amount(float lateral, float row, float above) {
 return int(lateral + 2.0 * row - above) * factor;
 }
@@ -254,7 +254,7 @@ slab = skybark_visible(i, s);
 skybark_cell = ivec2(i, slab.slice);
 gl_Position = skybark_corner(slab, corners[uint(gl_VertexID) - rectangle * 6u]);
 }
-)glsl", 4001};
+)glsl", 4007};
     static constexpr std::string_view slabs_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define KERNEL_PARAMETERS uint most; int per_x; int per_z; int factor;
@@ -319,7 +319,7 @@ box.low.z + by);
 float kernel_lateral(uint i, int x, int z) {
 return float(boxes[i].low.w + per_x * x + per_z * z);
 }
-float kernel_row(uint i, int y) { return float(boxes[i].high.w * y); }
+float kernel_row(uint i, int y) { return float(boxes[i].high.w * (y + 1)); }
 int kernel_amount(float lateral, float row, float above) {
 return int(lateral + 2.0 * row - above) * factor;
 }
@@ -384,7 +384,7 @@ skybark_emit(i, slab);
 }
 }
 }
-)glsl", 4493};
+)glsl", 4499};
     static constexpr std::string_view slabs_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define KERNEL_PARAMETERS uint most; int per_x; int per_z; int factor;
@@ -449,7 +449,7 @@ box.low.z + by);
 float kernel_lateral(uint i, int x, int z) {
 return float(boxes[i].low.w + per_x * x + per_z * z);
 }
-float kernel_row(uint i, int y) { return float(boxes[i].high.w * y); }
+float kernel_row(uint i, int y) { return float(boxes[i].high.w * (y + 1)); }
 int kernel_amount(float lateral, float row, float above) {
 return int(lateral + 2.0 * row - above) * factor;
 }
@@ -491,7 +491,7 @@ int low = amount & 255;
 int carry = low >> 7;
 skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));
 }
-)glsl", 3845};
+)glsl", 3851};
 };
 
 } // namespace skybark::opengl
