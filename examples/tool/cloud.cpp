@@ -135,6 +135,8 @@ result<std::vector<cloud_particle>> particles_of(const cloud_job& job) {
     if (job.options.source == cloud_source::cumuli) {
         clouds::cumulus_field_options field;
         field.seed = job.common.seed;
+        field.clouds = 24;
+        field.extent = 9000;
         field.particles_per_cloud = std::max(1u, job.options.particles / field.clouds);
         return clouds::cumulus_field(field);
     }

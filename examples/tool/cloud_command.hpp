@@ -197,9 +197,8 @@ class cloud_maker {
         }
         job_.box = lit->box;
         std::vector<io::probed_light> found(job_.points.size());
-        auto done = look_up(lit->volume, nullptr, {}, [&](std::size_t i, glm::vec4 at) {
-            found[i].optical_depth = at.x;
-        });
+        auto done = look_up(lit->volume, nullptr, {},
+                            [&](std::size_t i, glm::vec4 at) { found[i].optical_depth = at.x; });
         if (done && light_of_volume() != clouds::attenuation_light::extinction) {
             done = relight(*lit, light_of_volume());
         }
@@ -348,6 +347,7 @@ class cloud_maker {
             clouds::add_octaves(light.lighting, options_.octaves);
         }
         clouds::add_sky(light.lighting, sky->volume.options(), sky->box, options_.phase);
+        tear(light.lighting);
         light.sun = &sun->volume.volume();
         light.sky = &sky->volume.volume();
         std::optional<clouds::multiple_scattering<B>> diffuse;
@@ -370,6 +370,21 @@ class cloud_maker {
             light.lighting.by_particle = 1;
         }
         return paint(light);
+    }
+
+    /// Built-in clouds have torn outlines, with grains as wide as their smallest particles. Those
+    /// of the paper's light are as the paper has them.
+    void tear(clouds::cloud_lighting& lighting) const {
+        const bool is_made =
+            options_.source == cloud_source::cumulus || options_.source == cloud_source::cumuli;
+        if (!is_made || job_.particles.empty() || options_.light == cloud_light::product) {
+            return;
+        }
+        float smallest = job_.particles.front().radius;
+        for (const cloud_particle& p : job_.particles) {
+            smallest = std::min(smallest, p.radius);
+        }
+        clouds::add_tears(lighting, 0.6f, 2 * smallest);
     }
 
     /// Harris's light of each particle.

@@ -278,7 +278,7 @@ TEST_F(tool_clouds, no_cloud_of_a_field_shines_by_itself) {
             brightest = std::max(brightest, p.light);
         }
         EXPECT_GT(brightest, 1.2) << sun;
-        EXPECT_LT(brightest, 6) << sun;
+        EXPECT_LT(brightest, 7) << sun;
     }
 }
 
