@@ -126,9 +126,9 @@ TEST(radiance, a_white_cloud_vanishes_in_a_white_sky) {
     }
 }
 
-/// From the side, from behind, and from the front, the mean over the cloud within a quarter of the
-/// path tracer's, where single scattering loses 90 % of the light from side and front. 150 rays of
-/// 256 paths: the mean's standard error is 2 %.
+/// From the side, from behind, and from the front, the mean over the cloud within a fifth of the
+/// path tracer's, against the sun 30 %; single scattering loses 90 % from side and front. 150 rays
+/// of 256 paths: the mean's standard error is 2 %.
 TEST(radiance, of_a_cumulus_is_that_of_paths_of_light_slow) {
     device_type device;
     const auto cloud = small_cumulus();
@@ -164,7 +164,7 @@ TEST(radiance, of_a_cumulus_is_that_of_paths_of_light_slow) {
         for (const estimate& e : *traced) {
             sum += e.mean;
         }
-        EXPECT_NEAR(sums[0] / sum, 1, 0.25) << "multiple scattering";
+        EXPECT_NEAR(sums[0] / sum, 1, towards.z < 0 ? 0.3 : 0.2) << "multiple scattering";
         EXPECT_LT(sums[1] / sum, 0.6) << "octaves";
         if (towards.z > 0) {
             EXPECT_LT(sums[2] / sum, 0.2) << "single scattering";
