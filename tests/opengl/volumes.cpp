@@ -37,7 +37,7 @@ std::vector<std::int32_t> expected_sums(const probe_slabs& kernel, std::span<con
                     if (z >= 0 && z < static_cast<int>(size.depth)) {
                         const std::int64_t amount =
                             (box.low.w + std::int64_t{kernel.per_x} * x + kernel.per_z * z +
-                             std::int64_t{box.high.w} * (y - 1)) *
+                             std::int64_t{box.high.w} * y) *
                             kernel.factor;
                         sums[(static_cast<std::size_t>(z) * size.height +
                               static_cast<std::size_t>(y)) *
