@@ -175,8 +175,7 @@ std::vector<std::int32_t> sums_of(const boxes_case& c, std::size_t first, std::s
                 for (int x = b.low.x + s; x < b.high.x; ++x) {
                     if (x >= 0 && x < w && y >= 0 && y < h && z >= 0 && z < d) {
                         sums[static_cast<std::size_t>((z * h + y) * w + x)] +=
-                            (b.low.w + c.kernel.per_x * x + c.kernel.per_z * z +
-                             b.high.w * (y - 1)) *
+                            (b.low.w + c.kernel.per_x * x + c.kernel.per_z * z + b.high.w * y) *
                             c.kernel.factor;
                     }
                 }
