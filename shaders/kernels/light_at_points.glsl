@@ -35,11 +35,20 @@ float value_at(int n, vec3 cells, vec3 ends) {
     return low + (high - low) * part.y;
 }
 
+float scattered_at(vec3 cells, vec3 size) {
+    vec3 inside = clamp(cells, vec3(0.0), size);
+    vec3 beyond = (cells - inside) * grid.voxel.xyz;
+    vec3 half_size = 0.5 * size * grid.voxel.xyz;
+    float radius = max(max(half_size.x, half_size.y), half_size.z);
+    float away = sqrt(beyond.x * beyond.x + beyond.y * beyond.y + beyond.z * beyond.z);
+    return value_at(1, inside * diffuse, size * diffuse) * scattered_part(away, radius);
+}
+
 void kernel_map(uint i) {
     vec3 cells = cells_of(grid, places[i * stride].xyz);
     vec3 size = vec3(size_of(0));
     float attenuation = value_at(0, cells, size);
     float light = octaves_light(attenuation, octaves, octave_weight, octave_attenuation);
-    float scattered = diffuse > 0.0 ? value_at(1, cells * diffuse, size * diffuse) : 0.0;
+    float scattered = diffuse > 0.0 ? scattered_at(cells, size) : 0.0;
     found[i] = vec4(attenuation, light + scattered, scattered, 0.0);
 }

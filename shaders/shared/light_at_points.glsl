@@ -25,3 +25,11 @@ float octaves_light(float attenuation, uint octaves, float weight, float part) {
     }
     return sum / weights;
 }
+
+// The part of a cloud's scattered light that is left at a distance from the box around it: a ball
+// of this radius as seen from there, over what it is at its surface, as solid angles,
+// 1 − √(1 − s²), s the sine of the angle of its edge.
+float scattered_part(float distance, float radius) {
+    float s = radius / (radius + distance);
+    return s * s / (1.0f + sqrt(1.0f - s * s));
+}

@@ -196,7 +196,8 @@ TEST_P(light_at_places, adds_the_scattered_light_where_its_own_grid_has_it) {
             }
             EXPECT_GT(inside, 800);
             EXPECT_GT(found[900].z, 0.1f) << "in the middle of the ball";
-            EXPECT_EQ(found.back(), glm::vec4(0, 1, 0, 0));
+            EXPECT_EQ(found.back().x, 0) << "between the ball and the sun";
+            EXPECT_GT(found.back().z, 0) << "the ball shines on it";
         }
     });
 }

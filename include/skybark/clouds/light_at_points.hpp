@@ -7,13 +7,14 @@
 //
 // For each place a vec4 is found, without units:
 //
-//     x  attenuation: what the volume holds, between the place and the sun. The optical depth,
-//     where
-//        it was relit for attenuation_light::extinction.
+//     x  attenuation: what the volume holds, between the place and the sun. The optical depth
+//        where it was relit for attenuation_light::extinction.
 //     y  the light: fluence ∫ L dω over the irradiance that the sun has on a surface which faces
 //        it outside of the cloud. e^{−x} of the beam (1: nothing is in the way), plus z. Times
 //        the sun's irradiance in W/m² it is in W/m².
-//     z  the part of y that was scattered more than once; 0 without multiple_scattering.
+//     z  the part of y that was scattered more than once; 0 without multiple_scattering. Outside
+//        of the box an estimate: that of the nearest place on it, by the solid angle under which
+//        a ball as large as the box is seen from there.
 //     w  0
 //
 // With a volume of attenuation_light::extinction and `octaves`, the beam's part is the mean of

@@ -5,7 +5,9 @@
 #include <skybark/core/kernel.hpp>
 #include <skybark/shared/light_at_points.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 
 namespace skybark::kernels {
 
@@ -15,8 +17,10 @@ namespace skybark::kernels {
 ///
 /// Between the middles of eight voxels it is linear along each axis, by whole floats: what filters
 /// of textures do has fewer digits on some devices. Above the box and beside it nothing is taken
-/// out, and nothing scattered; below it, and within half a voxel of its bottom, the undermost layer
-/// goes on.
+/// out; below it, and within half a voxel of its bottom, the undermost layer goes on. What was
+/// scattered is, outside of the box, that of the nearest place on it, in the measure in which a
+/// ball as large as the box is seen from there: an estimate, which is continuous and fades with the
+/// square of the distance.
 struct light_at_points {
     using buffers = buffer_list<readonly<glm::vec4>, writeonly<glm::vec4>>;
     static constexpr std::uint32_t volumes = 2;
@@ -34,16 +38,27 @@ struct light_at_points {
     void map(std::uint32_t i, const Grids& grids, std::span<const glm::vec4> places,
              std::span<glm::vec4> found) const {
         const glm::vec3 cells = shared::cells_of(grid, glm::vec3(places[std::size_t{i} * stride]));
-        const float attenuation = value_at(grids, 0, cells, grids.size(0));
+        const float attenuation = value_at(grids, 0, cells, glm::vec3(grids.size(0)));
         const float light =
             shared::octaves_light(attenuation, octaves, octave_weight, octave_attenuation);
-        const float scattered =
-            diffuse > 0.0f ? value_at(grids, 1, cells * diffuse, glm::vec3(grids.size(0)) * diffuse)
-                           : 0.0f;
+        const float scattered = diffuse > 0.0f ? scattered_at(grids, cells) : 0.0f;
         found[i] = glm::vec4(attenuation, light + scattered, scattered, 0.0f);
     }
 
   private:
+    template <class Grids>
+    [[nodiscard]] float scattered_at(const Grids& grids, glm::vec3 cells) const {
+        const glm::vec3 size(grids.size(0));
+        const glm::vec3 inside = glm::clamp(cells, glm::vec3(0), size);
+        const glm::vec3 beyond = (cells - inside) * glm::vec3(grid.voxel);
+        const glm::vec3 half_size = 0.5f * size * glm::vec3(grid.voxel);
+        const float radius = std::max(std::max(half_size.x, half_size.y), half_size.z);
+        const float away =
+            std::sqrt(beyond.x * beyond.x + beyond.y * beyond.y + beyond.z * beyond.z);
+        return value_at(grids, 1, inside * diffuse, size * diffuse) *
+               shared::scattered_part(away, radius);
+    }
+
     /// Of volume `n`, whose cells end at `ends`; 0 above and beside.
     template <class Grids>
     [[nodiscard]] static float value_at(const Grids& grids, std::uint32_t n, glm::vec3 cells,

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 a2dcfa1e8e91d61111b282bb45bee7e3ee269eced1968f1c139ac50136ac2db5
+// sha256 681a29e7b8f275c7fd984393fa068bf9b140cbe887a5f4f8b18a59e68211b024
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -32,6 +32,14 @@ inline float octaves_light(float attenuation, uint octaves, float weight, float 
         depth = depth * part;
     }
     return sum / weights;
+}
+
+// The part of a cloud's scattered light that is left at a distance from the box around it: a ball
+// of this radius as seen from there, over what it is at its surface, as solid angles,
+// 1 − √(1 − s²), s the sine of the angle of its edge.
+inline float scattered_part(float distance, float radius) {
+    float s = radius / (radius + distance);
+    return s * s / (1.0f + sqrt(1.0f - s * s));
 }
 
 } // namespace skybark::shared

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 86bc4652ff4c74f7affc36fc2bd9c9657ddcb11cc1a0531503c70094a727040d
+// sha256 5c40761627e269ffd7f3c40ea6dd22c388bb5a53a3968a8fec0690e4d3e693b6
 #pragma once
 
 #include <skybark/kernels/light_at_points.hpp>
@@ -301,6 +301,10 @@ depth = depth * part;
 }
 return sum / weights;
 }
+float scattered_part(float distance, float radius) {
+float s = radius / (radius + distance);
+return s * s / (1.0f + sqrt(1.0f - s * s));
+}
 layout(std430, binding = 0) readonly buffer places_buffer { vec4 places[]; };
 layout(std430, binding = 1) writeonly buffer found_buffer { vec4 found[]; };
 ivec3 size_of(int n) {
@@ -328,12 +332,20 @@ voxel_at(n, at + ivec3(0, 1, 1)), voxel_at(n, at + ivec3(1, 1, 1)),
 part.x, part.z);
 return low + (high - low) * part.y;
 }
+float scattered_at(vec3 cells, vec3 size) {
+vec3 inside = clamp(cells, vec3(0.0), size);
+vec3 beyond = (cells - inside) * grid.voxel.xyz;
+vec3 half_size = 0.5 * size * grid.voxel.xyz;
+float radius = max(max(half_size.x, half_size.y), half_size.z);
+float away = sqrt(beyond.x * beyond.x + beyond.y * beyond.y + beyond.z * beyond.z);
+return value_at(1, inside * diffuse, size * diffuse) * scattered_part(away, radius);
+}
 void kernel_map(uint i) {
 vec3 cells = cells_of(grid, places[i * stride].xyz);
 vec3 size = vec3(size_of(0));
 float attenuation = value_at(0, cells, size);
 float light = octaves_light(attenuation, octaves, octave_weight, octave_attenuation);
-float scattered = diffuse > 0.0 ? value_at(1, cells * diffuse, size * diffuse) : 0.0;
+float scattered = diffuse > 0.0 ? scattered_at(cells, size) : 0.0;
 found[i] = vec4(attenuation, light + scattered, scattered, 0.0);
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
@@ -348,7 +360,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 9391};
+)glsl", 9930};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -642,6 +654,10 @@ depth = depth * part;
 }
 return sum / weights;
 }
+float scattered_part(float distance, float radius) {
+float s = radius / (radius + distance);
+return s * s / (1.0f + sqrt(1.0f - s * s));
+}
 layout(std430, binding = 0) readonly buffer places_buffer { vec4 places[]; };
 layout(std430, binding = 1) writeonly buffer found_buffer { vec4 found[]; };
 ivec3 size_of(int n) {
@@ -669,12 +685,20 @@ voxel_at(n, at + ivec3(0, 1, 1)), voxel_at(n, at + ivec3(1, 1, 1)),
 part.x, part.z);
 return low + (high - low) * part.y;
 }
+float scattered_at(vec3 cells, vec3 size) {
+vec3 inside = clamp(cells, vec3(0.0), size);
+vec3 beyond = (cells - inside) * grid.voxel.xyz;
+vec3 half_size = 0.5 * size * grid.voxel.xyz;
+float radius = max(max(half_size.x, half_size.y), half_size.z);
+float away = sqrt(beyond.x * beyond.x + beyond.y * beyond.y + beyond.z * beyond.z);
+return value_at(1, inside * diffuse, size * diffuse) * scattered_part(away, radius);
+}
 void kernel_map(uint i) {
 vec3 cells = cells_of(grid, places[i * stride].xyz);
 vec3 size = vec3(size_of(0));
 float attenuation = value_at(0, cells, size);
 float light = octaves_light(attenuation, octaves, octave_weight, octave_attenuation);
-float scattered = diffuse > 0.0 ? value_at(1, cells * diffuse, size * diffuse) : 0.0;
+float scattered = diffuse > 0.0 ? scattered_at(cells, size) : 0.0;
 found[i] = vec4(attenuation, light + scattered, scattered, 0.0);
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
@@ -688,7 +712,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 9406};
+)glsl", 9945};
 };
 
 } // namespace skybark::opengl
