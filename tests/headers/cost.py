@@ -29,7 +29,7 @@ BOUNDS = {
     "skybark/skybark.hpp": 145,
     "skybark/cpu/cpu.hpp": 79,
     "skybark/opengl/opengl.hpp": 93,
-    "skybark/vulkan/vulkan.hpp": 137,
+    "skybark/vulkan/vulkan.hpp": 133,
 }
 
 

@@ -84,10 +84,7 @@ class pipeline_cache {
     pipeline_cache& operator=(const pipeline_cache&) = delete;
     ~pipeline_cache() {
         const context& c = *context_;
-        for (const auto& [words, pipeline] : compute_) {
-            c.call.destroy_pipeline(c.device(), pipeline, c.callbacks());
-        }
-        for (const auto& [key, pipeline] : draw_) {
+        for (const auto& [key, pipeline] : pipelines_) {
             c.call.destroy_pipeline(c.device(), pipeline, c.callbacks());
         }
         for (const auto& [shape, layout] : layouts_) {
@@ -116,30 +113,32 @@ class pipeline_cache {
 
     [[nodiscard]] result<VkPipeline> compute(spirv_words words, const layout_shape& shape,
                                              const char* name) {
-        if (const auto found = compute_.find(words.data()); found != compute_.end()) {
+        pipeline_key key;
+        key.words = words.data();
+        if (const auto found = pipelines_.find(key); found != pipelines_.end()) {
             return found->second;
         }
         auto made = watch_compilation(name, [&] { return make_compute(words, shape, name); });
         if (made) {
-            compute_.emplace(words.data(), *made);
+            pipelines_.emplace(key, *made);
         }
         return made;
     }
 
     [[nodiscard]] result<VkPipeline> draw(const draw_program& program, const char* name) {
-        const draw_key key{program.vertex.data(),
-                           program.color,
-                           program.depth,
-                           program.state.depth_test,
-                           program.state.depth_write,
-                           program.state.blend,
-                           program.state.cull};
-        if (const auto found = draw_.find(key); found != draw_.end()) {
+        const pipeline_key key{program.vertex.data(),
+                               program.color,
+                               program.depth,
+                               program.state.depth_test,
+                               program.state.depth_write,
+                               program.state.blend,
+                               program.state.cull};
+        if (const auto found = pipelines_.find(key); found != pipelines_.end()) {
             return found->second;
         }
         auto made = watch_compilation(name, [&] { return make_draw(program, name); });
         if (made) {
-            draw_.emplace(key, *made);
+            pipelines_.emplace(key, *made);
         }
         return made;
     }
@@ -168,16 +167,17 @@ class pipeline_cache {
     }
 
   private:
-    struct draw_key {
-        const void* vertex;
-        VkFormat color;
-        VkFormat depth;
-        bool depth_test;
-        bool depth_write;
-        blend_mode blend;
-        cull_mode cull;
+    /// The words of the first shader, and what else a draw's pipeline is made for.
+    struct pipeline_key {
+        const void* words = nullptr;
+        VkFormat color = VK_FORMAT_UNDEFINED;
+        VkFormat depth = VK_FORMAT_UNDEFINED;
+        bool depth_test = false;
+        bool depth_write = false;
+        blend_mode blend{};
+        cull_mode cull{};
 
-        [[nodiscard]] auto operator<=>(const draw_key&) const = default;
+        [[nodiscard]] auto operator<=>(const pipeline_key&) const = default;
     };
 
     /// Names what was made, and logs how long it took, or why it was not.
@@ -429,8 +429,7 @@ class pipeline_cache {
     }
 
     context* context_;
-    std::map<const void*, VkPipeline> compute_;
-    std::map<draw_key, VkPipeline> draw_;
+    std::map<pipeline_key, VkPipeline> pipelines_;
     std::map<layout_shape, std::unique_ptr<program_layout>> layouts_;
     std::array<VkSampler, 4> samplers_{};
 };
