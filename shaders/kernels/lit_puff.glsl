@@ -18,8 +18,7 @@ const float near_sides = 1.3;
 
 vec4 kernel_vertex(uint index) {
     uint number = order[index / 6u];
-    uint k = index % 6u;
-    uint which = k < 3u ? k : (k == 3u ? 2u : (k == 4u ? 1u : 3u));
+    uint which = puff_corner_of(index);
     float x = (which & 1u) != 0u ? 1.0 : -1.0;
     float y = (which & 2u) != 0u ? 1.0 : -1.0;
     vec4 ball = particles[2u * number];
@@ -38,7 +37,7 @@ vec4 kernel_vertex(uint index) {
     varying_out[3] = vec4(lighting.by_particle != 0u ? light[number] : -1.0, scaled.single,
                           scaled.diffuse, 0.0);
     varying_out[0] = vec4(0.0, 0.0, 0.0, water.x * scaled.depth);
-    if (!(water.x > 0.0) || !(radius > 0.0) || !(away2 >= 0.0)) {
+    if (!puff_drawn(water.x, radius, water.y, away2)) {
         return vec4(0.0, 0.0, 2.0, 1.0);
     }
     if (away2 < near_sides * radius * radius) {
@@ -47,13 +46,7 @@ vec4 kernel_vertex(uint index) {
         varying_out[0].xyz = at.xyz * (1.0 / at.w) - ball.xyz;
         return screen;
     }
-    // The silhouette of the sphere, on the plane through its centre.
-    float side_half = radius * away / sqrt(away2 - radius * radius);
-    vec3 back = c * (1.0 / away);
-    bool steep = back.y * back.y > 0.98;
-    vec3 side = normalize(steep ? vec3(0.0, back.z, -back.y) : vec3(-back.z, 0.0, back.x));
-    vec3 up = cross(side, back);
-    vec3 offset = side * (x * side_half) + up * (y * side_half);
+    vec3 offset = puff_silhouette(c, radius, x, y).offset;
     varying_out[0].xyz = offset;
     return scene.to_clip * vec4(ball.xyz + offset, 1.0);
 }
@@ -86,7 +79,7 @@ bool kernel_fragment(vec2 pixel, bool front) {
     vec3 place = scene.camera.xyz + direction * at;
     vec3 source =
         cloud_source(place, direction, varying_in[3].x, varying_in[3].y, varying_in[3].z) *
-        (lighting.document != 0u ? depth : alpha);
+        (lighting.paper_form != 0u ? depth : alpha);
     float hidden = air_between(lighting.air, at);
     color_out = behind_air(source, alpha, hidden, varying_in[2].xyz);
     return true;

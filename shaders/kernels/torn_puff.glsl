@@ -18,8 +18,7 @@ const float near_sides = 1.3;
 
 vec4 kernel_vertex(uint index) {
     uint number = order[index / 6u];
-    uint k = index % 6u;
-    uint which = k < 3u ? k : (k == 3u ? 2u : (k == 4u ? 1u : 3u));
+    uint which = puff_corner_of(index);
     float x = (which & 1u) != 0u ? 1.0 : -1.0;
     float y = (which & 2u) != 0u ? 1.0 : -1.0;
     vec4 ball = particles[2u * number];
@@ -31,25 +30,24 @@ vec4 kernel_vertex(uint index) {
     varying_out[1] = vec4(0.0);
     varying_out[2] = vec4(0.0);
     varying_out[3] = vec4(0.0);
-    if (!(water.x > 0.0) || !(radius > 0.0) || !(away2 > near_sides * radius * radius)) {
+    vec3 calm = rest[2u * number].xyz;
+    if (!puff_drawn(water.x, radius, water.y, away2) || !puff_finite(dot(calm, calm)) ||
+        !(away2 > near_sides * radius * radius)) {
         return vec4(0.0, 0.0, 2.0, 1.0);
     }
-    // The silhouette of the sphere, on the plane through its centre.
     float away = sqrt(away2);
-    float side_half = away / sqrt(away2 - radius * radius);
-    vec3 ahead = c * (1.0 / away);
-    vec3 right = puff_right(ahead);
-    vec3 up = cross(right, ahead);
-    vec3 offset = (right * x + up * y) * (side_half * radius);
+    puff_corner corner = puff_silhouette(c, radius, x, y);
+    float u = x * corner.over;
+    float v = y * corner.over;
     puff_radiance light = lights[number];
     float hidden = air_between(lighting.air, away);
-    vec3 own = light.middle.xyz + (light.right.xyz * x + light.up.xyz * y) * side_half;
+    vec3 own = light.middle.xyz + light.right.xyz * u + light.up.xyz * v;
     scaled_scattering scaled = scattering_without(water.y, lighting.forward);
-    varying_out[0] = vec4(x * side_half, y * side_half, water.x * scaled.depth, 0.0);
+    varying_out[0] = vec4(u, v, water.x * scaled.depth, 0.0);
     varying_out[1] = vec4(own * (1.0 - hidden), 0.0);
     varying_out[2] = vec4(light.air.xyz * hidden, 0.0);
-    varying_out[3] = vec4(rest[2u * number].xyz + offset, radius);
-    return scene.to_clip * vec4(ball.xyz + offset, 1.0);
+    varying_out[3] = vec4(calm + corner.offset, radius);
+    return scene.to_clip * vec4(ball.xyz + corner.offset, 1.0);
 }
 #endif
 #ifdef SKYBARK_FRAGMENT_STAGE

@@ -20,7 +20,7 @@ struct cloud_lighting {
     float sky;               // of the light from above and below, what is let in: 0 or 1
     float sky_thickness;     // two-stream thickness of one attenuation in the sky's volume
     float diffuse;           // what multiplies the third volume: 0 for none
-    uint document;           // 1: S = a tau P I; 0: a (1 - exp -tau) P I
+    uint paper_form;         // 1: S = a tau P I; 0: a (1 - exp -tau) P I
     uint by_particle;        // 1: one light value a particle, from a buffer
     uint forward_point;      // 1: lit where what is seen was scattered; 0: in the billboard's plane
     float torn;              // how deep noise eats into a particle's outline, below 1; 0: not at all

@@ -9,8 +9,12 @@
 #include <skybark/clouds/cloud_density.hpp>
 #include <skybark/clouds/cumulus.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cstring>
 #include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -222,7 +226,7 @@ TEST_P(drawing, a_puff_has_the_profile_of_a_gaussian) {
 }
 
 /// The paper's own form is a tau P I, and does not saturate.
-TEST_P(drawing, the_document_scatters_in_proportion_to_the_depth) {
+TEST_P(drawing, the_papers_form_scatters_in_proportion_to_the_depth) {
     support::with_device(GetParam(), [](auto& device) {
         using B = std::remove_reference_t<decltype(device)>;
         stage<B> on(device);
@@ -235,7 +239,7 @@ TEST_P(drawing, the_document_scatters_in_proportion_to_the_depth) {
         cloud_lighting lighting = plain_light(grid_at({-2, -2, -2}));
         const auto phase = clouds::phase_function::henyey_greenstein(0.5);
         lighting.phase = phase.parameters();
-        lighting.document = 1;
+        lighting.paper_form = 1;
         const auto pixels = on.draw({&p, 1}, {lighting, &lit, nullptr, nullptr, {}});
         for (int y = 0; y < side; ++y) {
             for (int x = 0; x < side; ++x) {
@@ -436,7 +440,8 @@ TEST_P(drawing, no_particles_and_senseless_ones_draw_nothing) {
         EXPECT_TRUE(
             all_background(on.draw({}, {lighting, &lit, nullptr, nullptr, {}}, background)));
         const float nan = std::numeric_limits<float>::quiet_NaN();
-        std::vector<cloud_particle> wrong(5);
+        const float infinite = std::numeric_limits<float>::infinity();
+        std::vector<cloud_particle> wrong(13);
         for (cloud_particle& p : wrong) {
             p.radius = 10;
             p.optical_depth = 1;
@@ -446,8 +451,90 @@ TEST_P(drawing, no_particles_and_senseless_ones_draw_nothing) {
         wrong[2].optical_depth = 0;
         wrong[3].position.y = nan;
         wrong[4].optical_depth = nan;
+        wrong[5].optical_depth = infinite;
+        wrong[6].optical_depth = -1;
+        wrong[7].radius = nan;
+        wrong[8].radius = infinite;
+        wrong[9].albedo = nan;
+        wrong[10].albedo = infinite;
+        wrong[11].albedo = -infinite;
+        wrong[12].position.z = -infinite;
+        for (std::size_t i = 0; i < wrong.size(); ++i) {
+            EXPECT_TRUE(all_background(
+                on.draw({&wrong[i], 1}, {lighting, &lit, nullptr, nullptr, {}}, background)))
+                << "the " << i << "th";
+        }
         EXPECT_TRUE(
             all_background(on.draw(wrong, {lighting, &lit, nullptr, nullptr, {}}, background)));
+    });
+}
+
+bool same_bytes(const std::vector<vec4>& a, const std::vector<vec4>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(vec4)) == 0;
+}
+
+/// Five that the eye is equally far from, three of them in one place: white ones, grey ones, thick
+/// and thin ones, drawn in all 120 orders of the list.
+TEST_P(drawing, the_order_of_the_list_does_not_matter) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        stage<B> on(device);
+        const auto lit = clear_volume(device);
+        on.set(scene_at({0, 0, 100}, {0, 0, 0}));
+        const cloud_lighting lighting = plain_light(grid_at({-2, -2, -2}));
+        std::vector<cloud_particle> five(5);
+        for (cloud_particle& p : five) {
+            p.position = vec3(8, 0, 0);
+            p.radius = 20;
+            p.optical_depth = 3;
+        }
+        five[1].albedo = 0.2f;
+        five[2].albedo = 0.6f;
+        five[2].optical_depth = 1;
+        five[3].position = vec3(-8, 0, 0); // sum of squares as that of the others
+        five[4].position = vec3(0, 8, 0);
+        five[4].albedo = 0.4f;
+        const cloud_light_sources<B> light{lighting, &lit, nullptr, nullptr, {}};
+        const auto expected = on.draw(five, light);
+        std::array<std::size_t, 5> order{0, 1, 2, 3, 4};
+        while (std::next_permutation(order.begin(), order.end())) {
+            std::vector<cloud_particle> listed;
+            for (const std::size_t i : order) {
+                listed.push_back(five[i]);
+            }
+            ASSERT_TRUE(same_bytes(on.draw(listed, light), expected))
+                << order[0] << order[1] << order[2] << order[3] << order[4];
+        }
+    });
+}
+
+/// A cloud of which every particle has a grey twin in its place, shuffled.
+TEST_P(drawing, a_shuffled_cloud_has_the_same_picture) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        cumulus_options options;
+        options.base = vec3(0, -20, 0);
+        options.width = 70;
+        options.thickness = 40;
+        options.particles = 400;
+        std::vector<cloud_particle> cloud = cumulus_cloud(options);
+        for (std::size_t i = 0; i < options.particles; ++i) {
+            cloud.push_back(cloud[i]);
+            cloud.back().albedo = 0.3f;
+        }
+        stage<B> on(device);
+        const auto lit = clear_volume(device);
+        on.set(scene_at({10, 5, 100}, {0, 0, 0}));
+        const cloud_light_sources<B> light{
+            plain_light(grid_at({-2, -2, -2})), &lit, nullptr, nullptr, {}};
+        const auto expected = on.draw(cloud, light);
+        std::mt19937 random(3);
+        for (int turn = 0; turn < 3; ++turn) {
+            for (std::size_t i = cloud.size() - 1; i > 0; --i) {
+                std::swap(cloud[i], cloud[random() % (i + 1)]);
+            }
+            EXPECT_TRUE(same_bytes(on.draw(cloud, light), expected));
+        }
     });
 }
 

@@ -7,6 +7,11 @@
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+
 namespace {
 
 using namespace skybark;
@@ -27,7 +32,20 @@ struct sight {
     float forward = 0;
     float air = 0;
     bool lit_by_fragment = false; ///< by cloud_billboards
+    bool unshaded = false;        ///< as if each were alone
 };
+
+sight one_particle() {
+    sight what;
+    cloud_particle p;
+    p.position = {1, -0.5f, 0};
+    p.radius = 6;
+    p.optical_depth = 1.7f;
+    p.albedo = 0.9f;
+    what.particles = {p};
+    what.rest = {p};
+    return what;
+}
 
 kernels::scene_record scene_of(const sight& what) {
     kernels::scene_record scene{};
@@ -50,7 +68,8 @@ std::vector<glm::vec4> draw(B& device, const sight& what, const torn_puff& how) 
     options.light = what.forward > 0 ? attenuation_light::continuum : attenuation_light::extinction;
     options.forward = what.forward;
     auto sun = attenuation_volume<B>::create(device, glm::uvec3(32), options);
-    const auto box = fit_light_box(what.particles, what.to_sun, glm::uvec3(32));
+    const auto box = fit_light_box(what.unshaded ? one_particle().particles : what.particles,
+                                   what.to_sun, glm::uvec3(32));
     auto moved = make_buffer<B, cloud_particle>(device, std::span(what.particles));
     auto rest = make_buffer<B, cloud_particle>(device, std::span(what.rest));
     auto on_device = make_buffer<B, kernels::scene_record>(device, std::span(&scene, 1));
@@ -63,7 +82,7 @@ std::vector<glm::vec4> draw(B& device, const sight& what, const torn_puff& how) 
     }
     EXPECT_TRUE(run(device, [&](auto& to) {
         // A single particle does not shade itself here.
-        sun->relight(to, view<B>(*moved), count > 1 ? count : 0, *box);
+        sun->relight(to, view<B>(*moved), count > 1 && !what.unshaded ? count : 0, *box);
         cloud_light_sources<B> light;
         light.lighting = single_scattering(options, *box, phase_function::isotropic());
         light.lighting.air = what.air;
@@ -84,17 +103,6 @@ std::vector<glm::vec4> draw(const sight& what, const torn_puff& how) {
     return draw(device, what, how);
 }
 
-sight one_particle() {
-    sight what;
-    cloud_particle p;
-    p.position = {1, -0.5f, 0};
-    p.radius = 6;
-    p.optical_depth = 1.7f;
-    p.albedo = 0.9f;
-    what.particles = {p};
-    what.rest = {p};
-    return what;
-}
 /// A ball of particles, 12 m across.
 sight many_particles() {
     sight what;
@@ -216,6 +224,67 @@ TEST(torn_billboards, are_the_same_on_every_backend) {
                 apart += double{glm::distance(expected[i], found[i])};
             }
             EXPECT_LT(apart / sum, 0.002) << name; // filtering of volumes, and edges
+        });
+    }
+}
+
+/// Five that the eye is equally far from, three of them in one place, in all orders of the list.
+TEST(torn_billboards, do_not_depend_on_the_order_of_the_list) {
+    std::vector<cloud_particle> five(5, one_particle().particles[0]);
+    const std::array<glm::vec3, 5> places{{{2, 0, 0}, {2, 0, 0}, {2, 0, 0}, {-2, 0, 0}, {0, 2, 0}}};
+    for (std::size_t i = 0; i < five.size(); ++i) {
+        five[i].position = places[i];
+        five[i].albedo = 1 - 0.2f * static_cast<float>(i);
+    }
+    five[2].optical_depth = 3;
+    for (const char* name : {"cpu", "opengl", "vulkan"}) {
+        support::with_device(name, [&](auto& device) {
+            std::array<std::size_t, 5> order{0, 1, 2, 3, 4};
+            std::vector<glm::vec4> expected;
+            do {
+                sight what;
+                for (const std::size_t i : order) {
+                    what.particles.push_back(five[i]);
+                }
+                what.rest = what.particles;
+                what.unshaded = true;
+                const auto found = draw(device, what, {0.6f, 0.4f, 0.5f});
+                if (expected.empty()) {
+                    expected = found;
+                }
+                ASSERT_EQ(
+                    std::memcmp(found.data(), expected.data(), found.size() * sizeof(glm::vec4)), 0)
+                    << name << ' ' << order[0] << order[1] << order[2] << order[3] << order[4];
+            } while (std::next_permutation(order.begin(), order.end()));
+        });
+    }
+}
+
+TEST(torn_billboards, draw_nothing_of_senseless_particles) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinite = std::numeric_limits<float>::infinity();
+    for (const char* name : {"cpu", "opengl", "vulkan"}) {
+        support::with_device(name, [&](auto& device) {
+            const auto nothing = [&](auto change) {
+                sight what = one_particle();
+                what.particles.push_back(what.particles[0]);
+                what.rest.push_back(what.rest[0]);
+                what.unshaded = true;
+                change(what.particles[0], what.rest[0]);
+                const auto both = draw(device, what, {0.6f, 0.4f, 0.5f});
+                what.particles.erase(what.particles.begin());
+                what.rest.erase(what.rest.begin());
+                const auto sane = draw(device, what, {0.6f, 0.4f, 0.5f});
+                return std::memcmp(both.data(), sane.data(), both.size() * sizeof(glm::vec4)) == 0;
+            };
+            for (const float wrong : {nan, infinite, -infinite}) {
+                EXPECT_TRUE(nothing([&](auto& p, auto&) { p.albedo = wrong; })) << name << wrong;
+                EXPECT_TRUE(nothing([&](auto& p, auto&) { p.optical_depth = wrong; })) << name;
+                EXPECT_TRUE(nothing([&](auto& p, auto&) { p.radius = wrong; })) << name << wrong;
+                EXPECT_TRUE(nothing([&](auto& p, auto&) { p.position.y = wrong; })) << name;
+                EXPECT_TRUE(nothing([&](auto&, auto& rest) { rest.position.x = wrong; })) << name;
+            }
+            EXPECT_FALSE(nothing([](auto& p, auto&) { p.albedo = 0.5f; })) << name;
         });
     }
 }

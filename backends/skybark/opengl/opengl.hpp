@@ -56,6 +56,7 @@
 #include <skybark/opengl/programs/merge_chains.hpp>
 #include <skybark/opengl/programs/merge_ends.hpp>
 #include <skybark/opengl/programs/pack_particles.hpp>
+#include <skybark/opengl/programs/particle_fingerprint.hpp>
 #include <skybark/opengl/programs/particle_impulse.hpp>
 #include <skybark/opengl/programs/patch_samples.hpp>
 #include <skybark/opengl/programs/pose_ends.hpp>

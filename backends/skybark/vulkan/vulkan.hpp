@@ -53,6 +53,7 @@
 #include <skybark/vulkan/programs/merge_chains.hpp>
 #include <skybark/vulkan/programs/merge_ends.hpp>
 #include <skybark/vulkan/programs/pack_particles.hpp>
+#include <skybark/vulkan/programs/particle_fingerprint.hpp>
 #include <skybark/vulkan/programs/particle_impulse.hpp>
 #include <skybark/vulkan/programs/patch_samples.hpp>
 #include <skybark/vulkan/programs/pose_ends.hpp>

@@ -2,26 +2,26 @@
 // cloud_billboards: draws the particles of a cloud, back to front, lit for each fragment.
 //
 //     auto puffs = cloud_billboards<B>::create(device, most_particles);
-//     cloud_lighting lighting = single_scattering(sun.options(), sun.box(), phase);
+//     cloud_lighting lighting = single_scattering(sun.options(), box, phase);
 //     run(device, [&](auto& recorder) {
 //         sun.relight(recorder, particles, count, box);
 //         puffs->record(recorder, particles, count, eye, scene, {lighting, &sun.volume()}, target);
 //     });
 //
 // Shimada, Shinya, Shiraishi, Harada 2008, section 2.2, eq. 5 and 6. Sorting happens on the device;
-// `record` allocates nothing and sends nothing but the lighting. The target's depth is tested and
-// not written: opaque things are drawn before.
+// `record` allocates nothing and sends nothing but the lighting. The picture does not depend on the
+// order of the particles. The target's depth is tested and not written: opaque things are drawn
+// before.
 
 #include <skybark/clouds/attenuation_volume.hpp>
 #include <skybark/clouds/phase.hpp>
+#include <skybark/clouds/sorted_puffs.hpp>
 #include <skybark/core/backend.hpp>
-#include <skybark/kernels/billboard_depth.hpp>
 #include <skybark/kernels/lit_puff.hpp>
 
+#include <array>
 #include <cassert>
 #include <numbers>
-#include <optional>
-#include <string>
 #include <utility>
 
 namespace skybark::clouds {
@@ -29,12 +29,12 @@ namespace skybark::clouds {
 using kernels::cloud_lighting;
 
 /// The sun's light that is scattered once, by an attenuation volume of these options: with
-/// `continuum` what goes on forward is part of the light. With `product`, `as_document` draws by
+/// `continuum` what goes on forward is part of the light. With `product`, `paper_form` draws by
 /// S = a τ P I as the paper does (which makes thick particles too bright).
 [[nodiscard]] inline cloud_lighting single_scattering(const attenuation_options& options,
                                                       const light_box& box,
                                                       const phase_function& phase,
-                                                      bool as_document = false) {
+                                                      bool paper_form = false) {
     cloud_lighting lighting{};
     lighting.sun_grid = box.grid;
     lighting.sky_grid = box.grid;
@@ -43,8 +43,8 @@ using kernels::cloud_lighting;
     lighting.octaves = glm::vec4(1, 1, 1, 1);
     lighting.forward = options.light == attenuation_light::continuum ? options.forward : 0.0f;
     lighting.sigmas = options.sigmas;
-    lighting.document = as_document ? 1 : 0;
-    lighting.forward_point = as_document ? 0 : 1;
+    lighting.paper_form = paper_form ? 1 : 0;
+    lighting.forward_point = paper_form ? 0 : 1;
     return lighting;
 }
 
@@ -84,7 +84,7 @@ inline void add_tears(cloud_lighting& lighting, float torn, float grain) {
 }
 
 /// What a draw of clouds is lit by. Volumes that the lighting does not use may be absent, that of
-/// the sun not.
+/// the sun not; what it uses has to be there.
 template <volume_backend B>
 struct cloud_light_sources {
     cloud_lighting lighting;
@@ -94,37 +94,34 @@ struct cloud_light_sources {
     buffer_view<B> by_particle; ///< floats: with lighting.by_particle, the light of each particle
 };
 
+namespace detail {
+
+/// What the kernels that draw clouds bind: where the lighting uses no volume, any.
 template <volume_backend B>
-requires maps<B, kernels::billboard_depth> && sorts<B> && draws_volumes<B, kernels::lit_puff>
+[[nodiscard]] std::array<const typename B::volume*, 3>
+light_volumes(const cloud_light_sources<B>& light) {
+    assert(light.sun != nullptr);
+    assert(light.sky != nullptr || !(light.lighting.sky > 0));
+    assert(light.diffuse != nullptr || !(light.lighting.diffuse > 0));
+    return {light.sun, light.sky != nullptr ? light.sky : light.sun,
+            light.diffuse != nullptr ? light.diffuse : light.sun};
+}
+
+} // namespace detail
+
+template <volume_backend B>
+requires detail::sorts_puffs<B> && draws_volumes<B, kernels::lit_puff>
 class cloud_billboards {
   public:
-    /// Room for `most_particles`. Fails with bad_input where the device cannot bind as many.
+    /// Room for `most_particles`: 8 bytes each. Fails with bad_input where the device cannot bind
+    /// as many.
     [[nodiscard]] static result<cloud_billboards> create(B& device, std::uint32_t most_particles) {
-        const device_limits limits = device.limits();
-        const std::uint64_t most =
-            std::min({limits.max_buffer_bytes / sizeof(cloud_particle), limits.max_elements,
-                      std::uint64_t{0xffffffffu} / corners});
-        if (most_particles > most) {
-            return fail(error_code::bad_input,
-                        std::string("Billboards for ")
-                            .append(std::to_string(most_particles))
-                            .append(" particles were asked for; this device draws up to ")
-                            .append(std::to_string(most))
-                            .append(" at once."));
+        auto sorted =
+            detail::sorted_puffs<B>::create(device, most_particles, sizeof(cloud_particle));
+        if (!sorted) {
+            return failure(sorted.error());
         }
-        cloud_billboards made;
-        made.capacity_ = most_particles;
-        const std::uint64_t bytes = std::uint64_t{most_particles} * 4;
-        for (auto& [buffer, size] :
-             {std::pair{&made.keys_, bytes}, std::pair{&made.order_, bytes},
-              std::pair{&made.lighting_, std::uint64_t{sizeof(cloud_lighting)}}}) {
-            auto one = device.create_buffer(size);
-            if (!one) {
-                return failure(one.error());
-            }
-            buffer->emplace(std::move(*one));
-        }
-        return made;
+        return cloud_billboards(std::move(*sorted));
     }
 
     /// Appends sorting and drawing of `count` particles as seen from `eye`, into images that have
@@ -133,42 +130,30 @@ class cloud_billboards {
     void record(typename B::recorder& to, const buffer_view<B>& particles, std::uint32_t count,
                 glm::vec3 eye, const buffer_view<B>& scene, const cloud_light_sources<B>& light,
                 const draw_target<B>& target) const {
-        assert(count <= capacity_ && light.sun != nullptr);
+        volume_bindings<B, kernels::lit_puff> volumes;
+        volumes.read = detail::light_volumes(light);
+        assert(light.by_particle || light.lighting.by_particle == 0);
         if (count == 0) {
             return;
         }
-        to.upload(view<B>(*lighting_), bytes_of_one(light.lighting));
-        const auto keys = view<B, std::uint32_t>(*keys_, 0, count);
-        const auto order = view<B, std::uint32_t>(*order_, 0, count);
-        to.map(kernels::billboard_depth{glm::vec4(eye, 0)}, {particles, keys, order},
-               range{0, count});
-        to.sort(keys, order);
-        volume_bindings<B, kernels::lit_puff> volumes;
-        volumes.read = {light.sun, light.sky != nullptr ? light.sky : light.sun,
-                        light.diffuse != nullptr ? light.diffuse : light.sun};
-        draw_geometry<B> all;
-        all.count = count * corners;
+        sorted_.record(to, particles, count, eye, light.lighting);
+        const buffer_view<B> order = sorted_.order(count);
         to.draw(kernels::lit_puff{},
                 {particles, order, light.by_particle ? light.by_particle : order, scene,
-                 view<B>(*lighting_)},
-                {}, volumes, all, target, draw_state{true, false, blend_mode::alpha});
+                 sorted_.lighting()},
+                {}, volumes, sorted_.squares(count), target,
+                draw_state{true, false, blend_mode::alpha});
     }
 
-    [[nodiscard]] std::uint32_t capacity() const noexcept { return capacity_; }
-    /// The particles' numbers, back to front, after a `record` of `count`.
-    [[nodiscard]] buffer_view<B> order(std::uint32_t count) const {
-        return view<B, std::uint32_t>(*order_, 0, count);
-    }
+    [[nodiscard]] std::uint32_t capacity() const noexcept { return sorted_.capacity(); }
+    /// The particles' numbers, back to front, after a `record` of `count`. Where two are equally
+    /// far from the eye, what they are decides, not where they are in the list.
+    [[nodiscard]] buffer_view<B> order(std::uint32_t count) const { return sorted_.order(count); }
 
   private:
-    cloud_billboards() = default;
+    explicit cloud_billboards(detail::sorted_puffs<B> sorted) : sorted_(std::move(sorted)) {}
 
-    static constexpr std::uint32_t corners = 6;
-
-    std::uint32_t capacity_ = 0;
-    std::optional<typename B::buffer> keys_; // all are there after create
-    std::optional<typename B::buffer> order_;
-    std::optional<typename B::buffer> lighting_;
+    detail::sorted_puffs<B> sorted_;
 };
 
 } // namespace skybark::clouds

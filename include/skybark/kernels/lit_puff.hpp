@@ -20,6 +20,9 @@ namespace skybark::kernels {
 /// With lighting.torn, noise that is at rest in space eats into each particle's optical depth where
 /// its billboard is; what is left is lit as it would be.
 ///
+/// A particle with a number that is infinite or none, or whose radius or depth is not above 0, is
+/// not drawn.
+///
 /// A particle that the eye is in, or nearly, covers the screen, and shows what of it lies before
 /// the eye. What is behind the eye isn't drawn.
 struct lit_puff {
@@ -42,7 +45,7 @@ struct lit_puff {
         const glm::vec3 eye(scene.camera);
         const glm::vec3 c = p.position - eye;
         const float away2 = glm::dot(c, c);
-        if (!(p.optical_depth > 0.0f) || !(p.radius > 0.0f) || !(away2 >= 0.0f)) {
+        if (!shared::puff_drawn(p.optical_depth, p.radius, p.albedo, away2)) {
             return {};
         }
         if (away2 < near_sides * p.radius * p.radius) {
@@ -50,15 +53,7 @@ struct lit_puff {
             const glm::vec4 at = scene.from_clip * screen;
             return {glm::vec3(at) * (1.0f / at.w) - p.position, screen};
         }
-        // The silhouette of the sphere, on the plane through its centre.
-        const float away = std::sqrt(away2);
-        const float half = p.radius * away / std::sqrt(away2 - p.radius * p.radius);
-        const glm::vec3 back = c * (1.0f / away);
-        const bool steep = back.y * back.y > 0.98f;
-        const glm::vec3 side = glm::normalize(steep ? glm::vec3(0.0f, back.z, -back.y)
-                                                    : glm::vec3(-back.z, 0.0f, back.x));
-        const glm::vec3 up = glm::cross(side, back);
-        const glm::vec3 offset = side * (x * half) + up * (y * half);
+        const glm::vec3 offset = shared::puff_silhouette(c, p.radius, x, y).offset;
         return {offset, scene.to_clip * glm::vec4(p.position + offset, 1.0f)};
     }
 
@@ -68,10 +63,8 @@ struct lit_puff {
                      std::span<const scene_record> scene,
                      std::span<const cloud_lighting> lighting) const {
         const std::uint32_t number = order[index / 6];
-        const std::uint32_t k = index % 6;
-        const std::uint32_t which = k < 3 ? k : (k == 3 ? 2 : (k == 4 ? 1 : 3));
         const cloud_particle& p = particles[number];
-        const corner at = corner_of(which, p, scene[0]);
+        const corner at = corner_of(shared::puff_corner_of(index), p, scene[0]);
         const glm::vec3 c = p.position - glm::vec3(scene[0].camera);
         const float away = std::sqrt(glm::dot(c, c));
         const glm::vec3 air = lighting[0].air > 0.0f && away > 0.0f
@@ -118,7 +111,7 @@ struct lit_puff {
         const glm::vec3 place = glm::vec3(scene[0].camera) + direction * at;
         const glm::vec3 source =
             cloud_source(scene[0], how, place, direction, in[3].x, in[3].y, in[3].z, from) *
-            (how.document != 0 ? depth : alpha);
+            (how.paper_form != 0 ? depth : alpha);
         const float hidden = shared::air_between(how.air, at);
         return {shared::behind_air(source, alpha, hidden, glm::vec3(in[2])), true};
     }

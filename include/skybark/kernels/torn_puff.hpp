@@ -16,6 +16,9 @@ namespace skybark::kernels {
 /// their order, the same particles at rest, lights (one puff_radiance a particle), one scene, one
 /// lighting.
 ///
+/// A particle with a number that is infinite or none, or whose radius or depth is not above 0, is
+/// not drawn.
+///
 /// For clouds that are looked at from outside: a particle that the eye is in, or nearly, and what
 /// is behind it, is not drawn.
 struct torn_puff {
@@ -36,36 +39,33 @@ struct torn_puff {
                      std::span<const scene_record> scene,
                      std::span<const cloud_lighting> lighting) const {
         const std::uint32_t number = order[index / 6];
-        const std::uint32_t k = index % 6;
-        const std::uint32_t which = k < 3 ? k : (k == 3 ? 2 : (k == 4 ? 1 : 3));
+        const std::uint32_t which = shared::puff_corner_of(index);
         const float x = (which & 1u) != 0 ? 1.0f : -1.0f;
         const float y = (which & 2u) != 0 ? 1.0f : -1.0f;
         const cloud_particle& p = particles[number];
         const glm::vec3 c = p.position - glm::vec3(scene[0].camera);
         const float away2 = glm::dot(c, c);
         out = {};
-        if (!(p.optical_depth > 0.0f) || !(p.radius > 0.0f) ||
+        const glm::vec3 calm = rest[number].position;
+        if (!shared::puff_drawn(p.optical_depth, p.radius, p.albedo, away2) ||
+            !shared::puff_finite(glm::dot(calm, calm)) ||
             !(away2 > near_sides * p.radius * p.radius)) {
             return {0.0f, 0.0f, 2.0f, 1.0f};
         }
-        // The silhouette of the sphere, on the plane through its centre.
         const float away = std::sqrt(away2);
-        const float half = away / std::sqrt(away2 - p.radius * p.radius);
-        const glm::vec3 ahead = c * (1.0f / away);
-        const glm::vec3 right = shared::puff_right(ahead);
-        const glm::vec3 up = glm::cross(right, ahead);
-        const glm::vec3 offset = (right * x + up * y) * (half * p.radius);
+        const shared::puff_corner corner = shared::puff_silhouette(c, p.radius, x, y);
+        const float u = x * corner.over;
+        const float v = y * corner.over;
         const shared::puff_radiance& light = lights[number];
         const float hidden = shared::air_between(lighting[0].air, away);
         const glm::vec3 own =
-            glm::vec3(light.middle) + (glm::vec3(light.right) * x + glm::vec3(light.up) * y) * half;
+            glm::vec3(light.middle) + glm::vec3(light.right) * u + glm::vec3(light.up) * v;
         const auto scaled = shared::scattering_without(p.albedo, lighting[0].forward);
-        const glm::vec3 at = rest[number].position + offset;
-        out[0] = glm::vec4(x * half, y * half, p.optical_depth * scaled.depth, 0.0f);
+        out[0] = glm::vec4(u, v, p.optical_depth * scaled.depth, 0.0f);
         out[1] = glm::vec4(own * (1.0f - hidden), 0.0f);
         out[2] = glm::vec4(glm::vec3(light.air) * hidden, 0.0f);
-        out[3] = glm::vec4(at, p.radius);
-        return scene[0].to_clip * glm::vec4(p.position + offset, 1.0f);
+        out[3] = glm::vec4(calm + corner.offset, p.radius);
+        return scene[0].to_clip * glm::vec4(p.position + corner.offset, 1.0f);
     }
 
     template <class Images>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1472d2fdadbeeaf043405467faec83f31d952b305a487f84d93da4cecc9f1aa3
+// sha256 de9505f8b8fcfd88f0bfb5574ab8f0f85622261fe1a4da8a20c6a000c711b8b3
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -28,7 +28,7 @@ struct cloud_lighting {
     float sky;               // of the light from above and below, what is let in: 0 or 1
     float sky_thickness;     // two-stream thickness of one attenuation in the sky's volume
     float diffuse;           // what multiplies the third volume: 0 for none
-    uint document;           // 1: S = a tau P I; 0: a (1 - exp -tau) P I
+    uint paper_form;         // 1: S = a tau P I; 0: a (1 - exp -tau) P I
     uint by_particle;        // 1: one light value a particle, from a buffer
     uint forward_point;      // 1: lit where what is seen was scattered; 0: in the billboard's plane
     float torn;              // how deep noise eats into a particle's outline, below 1; 0: not at all

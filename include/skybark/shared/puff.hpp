@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1c1b27bec085831efcc0a481b474dcbf59d1cc36594e8fdbf3f7387e8b5d5380
+// sha256 983a66f5a08038642a7606131b9e8923fec806ff190e86b1882371a13f4fab56
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -27,6 +27,58 @@ inline vec3 puff_right(vec3 ahead) {
     float z = steep ? -ahead.y : ahead.x;
     float over = 1.0f / sqrt(x * x + y * y + z * z);
     return vec3(x * over, y * over, z * over);
+}
+
+// A corner of the square that covers a ball's silhouette, on the plane through the ball's centre.
+struct puff_corner {
+    vec3 offset; // from the centre, m
+    float over;  // half the square's side, in radii of the ball
+};
+
+// `centre` as seen from the eye, more than a radius away; x and y: -1 or 1.
+inline puff_corner puff_silhouette(vec3 centre, float radius, float x, float y) {
+    float away2 = centre.x * centre.x + centre.y * centre.y + centre.z * centre.z;
+    float away = sqrt(away2);
+    puff_corner corner;
+    corner.over = away / sqrt(away2 - radius * radius);
+    vec3 ahead = centre * (1.0f / away);
+    vec3 right = puff_right(ahead);
+    vec3 up = vec3(right.y * ahead.z - right.z * ahead.y, right.z * ahead.x - right.x * ahead.z,
+                   right.x * ahead.y - right.y * ahead.x);
+    float u = x * corner.over * radius;
+    float v = y * corner.over * radius;
+    corner.offset = right * u + up * v;
+    return corner;
+}
+
+// Which corner a vertex of the square's two triangles is: bit 0 right, bit 1 up.
+inline uint puff_corner_of(uint index) {
+    uint k = index % 6u;
+    return k < 3u ? k : (k == 3u ? 2u : (k == 4u ? 1u : 3u));
+}
+
+// Neither infinite nor not a number.
+inline bool puff_finite(float x) { return (floatBitsToInt(x) & 2147483647) < 2139095040; }
+
+// Whether a particle can be drawn at all: `away2` is the square of its distance.
+inline bool puff_drawn(float optical_depth, float radius, float albedo, float away2) {
+    return puff_finite(optical_depth) && puff_finite(radius) && puff_finite(albedo) &&
+           puff_finite(away2) && optical_depth > 0.0f && radius > 0.0f;
+}
+
+inline uint puff_mixed(uint hash, float value) {
+    uint h = (hash ^ uint(floatBitsToInt(value))) * 2246822519u;
+    return h ^ (h >> 15u);
+}
+// A number that a particle has whatever its place in a list. Of particles that differ in one value
+// alone no two have the same: each step of it can be undone.
+inline uint puff_fingerprint(vec3 position, float radius, float optical_depth, float albedo) {
+    uint h = puff_mixed(2654435769u, position.x);
+    h = puff_mixed(h, position.y);
+    h = puff_mixed(h, position.z);
+    h = puff_mixed(h, radius);
+    h = puff_mixed(h, optical_depth);
+    return puff_mixed(h, albedo);
 }
 
 // Two octaves of noise at a place in a cloud, 0...1: `over` is 1 / the size of its grains, 1/m.

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 e6468bc034631f09ddfdc5cf195853ef5c923451d43bf17b260b4a21ae0d4c53
+// sha256 2eca86cfdfdf897755421a01515df8d1366f50e8e67e0693c5c8bcaa30e65d1d
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>
@@ -310,7 +310,7 @@ float air;
 float sky;
 float sky_thickness;
 float diffuse;
-uint document;
+uint paper_form;
 uint by_particle;
 uint forward_point;
 float torn;
@@ -393,12 +393,11 @@ last = min(last, max(a, b));
 return vec2(first, last);
 }
 layout(std430, binding = 0) readonly buffer particles_buffer { vec4 particles[]; };
-layout(std430, binding = 1) writeonly buffer keys_buffer { uint keys[]; };
-layout(std430, binding = 2) writeonly buffer order_buffer { uint order[]; };
+layout(std430, binding = 1) readonly buffer order_buffer { uint order[]; };
+layout(std430, binding = 2) writeonly buffer keys_buffer { uint keys[]; };
 void kernel_map(uint i) {
-vec3 d = particles[2u * i].xyz - eye.xyz;
+vec3 d = particles[2u * order[i]].xyz - eye.xyz;
 keys[i] = farther_first(d.x * d.x + d.y * d.y + d.z * d.z);
-order[i] = i;
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
 uint skybark_elements() {
@@ -412,7 +411,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 10799};
+)glsl", 10793};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -715,7 +714,7 @@ float air;
 float sky;
 float sky_thickness;
 float diffuse;
-uint document;
+uint paper_form;
 uint by_particle;
 uint forward_point;
 float torn;
@@ -798,12 +797,11 @@ last = min(last, max(a, b));
 return vec2(first, last);
 }
 layout(std430, binding = 0) readonly buffer particles_buffer { vec4 particles[]; };
-layout(std430, binding = 1) writeonly buffer keys_buffer { uint keys[]; };
-layout(std430, binding = 2) writeonly buffer order_buffer { uint order[]; };
+layout(std430, binding = 1) readonly buffer order_buffer { uint order[]; };
+layout(std430, binding = 2) writeonly buffer keys_buffer { uint keys[]; };
 void kernel_map(uint i) {
-vec3 d = particles[2u * i].xyz - eye.xyz;
+vec3 d = particles[2u * order[i]].xyz - eye.xyz;
 keys[i] = farther_first(d.x * d.x + d.y * d.y + d.z * d.z);
-order[i] = i;
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
 void main() {
@@ -816,7 +814,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 10814};
+)glsl", 10808};
 };
 
 } // namespace skybark::opengl

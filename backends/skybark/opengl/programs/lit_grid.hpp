@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d2859b2750c3d5704fcfbe9ea9ca52425a7350db9f514ff1ce1d2572e36cc98c
+// sha256 fec177d6b8f71894fe0918c3a9d9690a152127172151b5c0d993f6531cc57947
 #pragma once
 
 #include <skybark/kernels/lit_grid.hpp>
@@ -430,7 +430,7 @@ float air;
 float sky;
 float sky_thickness;
 float diffuse;
-uint document;
+uint paper_form;
 uint by_particle;
 uint forward_point;
 float torn;
@@ -633,7 +633,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 19348};
+)glsl", 19350};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1054,7 +1054,7 @@ float air;
 float sky;
 float sky_thickness;
 float diffuse;
-uint document;
+uint paper_form;
 uint by_particle;
 uint forward_point;
 float torn;
@@ -1261,7 +1261,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 19361};
+)glsl", 19363};
 };
 
 } // namespace skybark::opengl

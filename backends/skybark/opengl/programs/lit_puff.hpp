@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 2aabe75dbf89d03c4403e657466d89496bed165cb531a8fdb8b8c47c54116704
+// sha256 bcd046eafdc40030c742e72517cdb8ad20d2b1013dfcb955c34deb729ed2ac35
 #pragma once
 
 #include <skybark/kernels/lit_puff.hpp>
@@ -428,7 +428,7 @@ float air;
 float sky;
 float sky_thickness;
 float diffuse;
-uint document;
+uint paper_form;
 uint by_particle;
 uint forward_point;
 float torn;
@@ -524,6 +524,45 @@ float z = steep ? -ahead.y : ahead.x;
 float over = 1.0f / sqrt(x * x + y * y + z * z);
 return vec3(x * over, y * over, z * over);
 }
+struct puff_corner {
+vec3 offset;
+float over;
+};
+puff_corner puff_silhouette(vec3 centre, float radius, float x, float y) {
+float away2 = centre.x * centre.x + centre.y * centre.y + centre.z * centre.z;
+float away = sqrt(away2);
+puff_corner corner;
+corner.over = away / sqrt(away2 - radius * radius);
+vec3 ahead = centre * (1.0f / away);
+vec3 right = puff_right(ahead);
+vec3 up = vec3(right.y * ahead.z - right.z * ahead.y, right.z * ahead.x - right.x * ahead.z,
+right.x * ahead.y - right.y * ahead.x);
+float u = x * corner.over * radius;
+float v = y * corner.over * radius;
+corner.offset = right * u + up * v;
+return corner;
+}
+uint puff_corner_of(uint index) {
+uint k = index % 6u;
+return k < 3u ? k : (k == 3u ? 2u : (k == 4u ? 1u : 3u));
+}
+bool puff_finite(float x) { return (floatBitsToInt(x) & 2147483647) < 2139095040; }
+bool puff_drawn(float optical_depth, float radius, float albedo, float away2) {
+return puff_finite(optical_depth) && puff_finite(radius) && puff_finite(albedo) &&
+puff_finite(away2) && optical_depth > 0.0f && radius > 0.0f;
+}
+uint puff_mixed(uint hash, float value) {
+uint h = (hash ^ uint(floatBitsToInt(value))) * 2246822519u;
+return h ^ (h >> 15u);
+}
+uint puff_fingerprint(vec3 position, float radius, float optical_depth, float albedo) {
+uint h = puff_mixed(2654435769u, position.x);
+h = puff_mixed(h, position.y);
+h = puff_mixed(h, position.z);
+h = puff_mixed(h, radius);
+h = puff_mixed(h, optical_depth);
+return puff_mixed(h, albedo);
+}
 float puff_noise(vec3 place, float over) {
 float coarse = value_noise(place.x * over, place.y * over, place.z * over, 16384u);
 float twice = 2.17f * over;
@@ -606,8 +645,7 @@ return lighting.sky > 0.0 ? light + cloud_sky(place) * (lighting.sky * diffuse) 
 const float near_sides = 1.3;
 vec4 kernel_vertex(uint index) {
 uint number = order[index / 6u];
-uint k = index % 6u;
-uint which = k < 3u ? k : (k == 3u ? 2u : (k == 4u ? 1u : 3u));
+uint which = puff_corner_of(index);
 float x = (which & 1u) != 0u ? 1.0 : -1.0;
 float y = (which & 2u) != 0u ? 1.0 : -1.0;
 vec4 ball = particles[2u * number];
@@ -626,7 +664,7 @@ varying_out[2] = vec4(air, 0.0);
 varying_out[3] = vec4(lighting.by_particle != 0u ? light[number] : -1.0, scaled.single,
 scaled.diffuse, 0.0);
 varying_out[0] = vec4(0.0, 0.0, 0.0, water.x * scaled.depth);
-if (!(water.x > 0.0) || !(radius > 0.0) || !(away2 >= 0.0)) {
+if (!puff_drawn(water.x, radius, water.y, away2)) {
 return vec4(0.0, 0.0, 2.0, 1.0);
 }
 if (away2 < near_sides * radius * radius) {
@@ -635,12 +673,7 @@ vec4 at = scene.from_clip * screen;
 varying_out[0].xyz = at.xyz * (1.0 / at.w) - ball.xyz;
 return screen;
 }
-float side_half = radius * away / sqrt(away2 - radius * radius);
-vec3 back = c * (1.0 / away);
-bool steep = back.y * back.y > 0.98;
-vec3 side = normalize(steep ? vec3(0.0, back.z, -back.y) : vec3(-back.z, 0.0, back.x));
-vec3 up = cross(side, back);
-vec3 offset = side * (x * side_half) + up * (y * side_half);
+vec3 offset = puff_silhouette(c, radius, x, y).offset;
 varying_out[0].xyz = offset;
 return scene.to_clip * vec4(ball.xyz + offset, 1.0);
 }
@@ -672,14 +705,14 @@ at = max(at - puff_front(depth) * radius / lighting.sigmas, 0.0);
 vec3 place = scene.camera.xyz + direction * at;
 vec3 source =
 cloud_source(place, direction, varying_in[3].x, varying_in[3].y, varying_in[3].z) *
-(lighting.document != 0u ? depth : alpha);
+(lighting.paper_form != 0u ? depth : alpha);
 float hidden = air_between(lighting.air, at);
 color_out = behind_air(source, alpha, hidden, varying_in[2].xyz);
 return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 21111};
+)glsl", 22271};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1098,7 +1131,7 @@ float air;
 float sky;
 float sky_thickness;
 float diffuse;
-uint document;
+uint paper_form;
 uint by_particle;
 uint forward_point;
 float torn;
@@ -1194,6 +1227,45 @@ float z = steep ? -ahead.y : ahead.x;
 float over = 1.0f / sqrt(x * x + y * y + z * z);
 return vec3(x * over, y * over, z * over);
 }
+struct puff_corner {
+vec3 offset;
+float over;
+};
+puff_corner puff_silhouette(vec3 centre, float radius, float x, float y) {
+float away2 = centre.x * centre.x + centre.y * centre.y + centre.z * centre.z;
+float away = sqrt(away2);
+puff_corner corner;
+corner.over = away / sqrt(away2 - radius * radius);
+vec3 ahead = centre * (1.0f / away);
+vec3 right = puff_right(ahead);
+vec3 up = vec3(right.y * ahead.z - right.z * ahead.y, right.z * ahead.x - right.x * ahead.z,
+right.x * ahead.y - right.y * ahead.x);
+float u = x * corner.over * radius;
+float v = y * corner.over * radius;
+corner.offset = right * u + up * v;
+return corner;
+}
+uint puff_corner_of(uint index) {
+uint k = index % 6u;
+return k < 3u ? k : (k == 3u ? 2u : (k == 4u ? 1u : 3u));
+}
+bool puff_finite(float x) { return (floatBitsToInt(x) & 2147483647) < 2139095040; }
+bool puff_drawn(float optical_depth, float radius, float albedo, float away2) {
+return puff_finite(optical_depth) && puff_finite(radius) && puff_finite(albedo) &&
+puff_finite(away2) && optical_depth > 0.0f && radius > 0.0f;
+}
+uint puff_mixed(uint hash, float value) {
+uint h = (hash ^ uint(floatBitsToInt(value))) * 2246822519u;
+return h ^ (h >> 15u);
+}
+uint puff_fingerprint(vec3 position, float radius, float optical_depth, float albedo) {
+uint h = puff_mixed(2654435769u, position.x);
+h = puff_mixed(h, position.y);
+h = puff_mixed(h, position.z);
+h = puff_mixed(h, radius);
+h = puff_mixed(h, optical_depth);
+return puff_mixed(h, albedo);
+}
 float puff_noise(vec3 place, float over) {
 float coarse = value_noise(place.x * over, place.y * over, place.z * over, 16384u);
 float twice = 2.17f * over;
@@ -1276,8 +1348,7 @@ return lighting.sky > 0.0 ? light + cloud_sky(place) * (lighting.sky * diffuse) 
 const float near_sides = 1.3;
 vec4 kernel_vertex(uint index) {
 uint number = order[index / 6u];
-uint k = index % 6u;
-uint which = k < 3u ? k : (k == 3u ? 2u : (k == 4u ? 1u : 3u));
+uint which = puff_corner_of(index);
 float x = (which & 1u) != 0u ? 1.0 : -1.0;
 float y = (which & 2u) != 0u ? 1.0 : -1.0;
 vec4 ball = particles[2u * number];
@@ -1296,7 +1367,7 @@ varying_out[2] = vec4(air, 0.0);
 varying_out[3] = vec4(lighting.by_particle != 0u ? light[number] : -1.0, scaled.single,
 scaled.diffuse, 0.0);
 varying_out[0] = vec4(0.0, 0.0, 0.0, water.x * scaled.depth);
-if (!(water.x > 0.0) || !(radius > 0.0) || !(away2 >= 0.0)) {
+if (!puff_drawn(water.x, radius, water.y, away2)) {
 return vec4(0.0, 0.0, 2.0, 1.0);
 }
 if (away2 < near_sides * radius * radius) {
@@ -1305,12 +1376,7 @@ vec4 at = scene.from_clip * screen;
 varying_out[0].xyz = at.xyz * (1.0 / at.w) - ball.xyz;
 return screen;
 }
-float side_half = radius * away / sqrt(away2 - radius * radius);
-vec3 back = c * (1.0 / away);
-bool steep = back.y * back.y > 0.98;
-vec3 side = normalize(steep ? vec3(0.0, back.z, -back.y) : vec3(-back.z, 0.0, back.x));
-vec3 up = cross(side, back);
-vec3 offset = side * (x * side_half) + up * (y * side_half);
+vec3 offset = puff_silhouette(c, radius, x, y).offset;
 varying_out[0].xyz = offset;
 return scene.to_clip * vec4(ball.xyz + offset, 1.0);
 }
@@ -1342,7 +1408,7 @@ at = max(at - puff_front(depth) * radius / lighting.sigmas, 0.0);
 vec3 place = scene.camera.xyz + direction * at;
 vec3 source =
 cloud_source(place, direction, varying_in[3].x, varying_in[3].y, varying_in[3].z) *
-(lighting.document != 0u ? depth : alpha);
+(lighting.paper_form != 0u ? depth : alpha);
 float hidden = air_between(lighting.air, at);
 color_out = behind_air(source, alpha, hidden, varying_in[2].xyz);
 return true;
@@ -1353,7 +1419,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 21124};
+)glsl", 22284};
 };
 
 } // namespace skybark::opengl

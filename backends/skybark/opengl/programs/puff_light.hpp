@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 d51bd5e630b5af2464121c596410f92fa5196be708a54119f3a07c32283ce981
+// sha256 2cc0db1e6932dd5973b739ef16812dae7f6b3cbbed01050496a3f4ea8e576292
 #pragma once
 
 #include <skybark/kernels/puff_light.hpp>
@@ -428,7 +428,7 @@ float air;
 float sky;
 float sky_thickness;
 float diffuse;
-uint document;
+uint paper_form;
 uint by_particle;
 uint forward_point;
 float torn;
@@ -523,6 +523,45 @@ float y = steep ? ahead.z : 0.0f;
 float z = steep ? -ahead.y : ahead.x;
 float over = 1.0f / sqrt(x * x + y * y + z * z);
 return vec3(x * over, y * over, z * over);
+}
+struct puff_corner {
+vec3 offset;
+float over;
+};
+puff_corner puff_silhouette(vec3 centre, float radius, float x, float y) {
+float away2 = centre.x * centre.x + centre.y * centre.y + centre.z * centre.z;
+float away = sqrt(away2);
+puff_corner corner;
+corner.over = away / sqrt(away2 - radius * radius);
+vec3 ahead = centre * (1.0f / away);
+vec3 right = puff_right(ahead);
+vec3 up = vec3(right.y * ahead.z - right.z * ahead.y, right.z * ahead.x - right.x * ahead.z,
+right.x * ahead.y - right.y * ahead.x);
+float u = x * corner.over * radius;
+float v = y * corner.over * radius;
+corner.offset = right * u + up * v;
+return corner;
+}
+uint puff_corner_of(uint index) {
+uint k = index % 6u;
+return k < 3u ? k : (k == 3u ? 2u : (k == 4u ? 1u : 3u));
+}
+bool puff_finite(float x) { return (floatBitsToInt(x) & 2147483647) < 2139095040; }
+bool puff_drawn(float optical_depth, float radius, float albedo, float away2) {
+return puff_finite(optical_depth) && puff_finite(radius) && puff_finite(albedo) &&
+puff_finite(away2) && optical_depth > 0.0f && radius > 0.0f;
+}
+uint puff_mixed(uint hash, float value) {
+uint h = (hash ^ uint(floatBitsToInt(value))) * 2246822519u;
+return h ^ (h >> 15u);
+}
+uint puff_fingerprint(vec3 position, float radius, float optical_depth, float albedo) {
+uint h = puff_mixed(2654435769u, position.x);
+h = puff_mixed(h, position.y);
+h = puff_mixed(h, position.z);
+h = puff_mixed(h, radius);
+h = puff_mixed(h, optical_depth);
+return puff_mixed(h, albedo);
 }
 float puff_noise(vec3 place, float over) {
 float coarse = value_noise(place.x * over, place.y * over, place.z * over, 16384u);
@@ -644,7 +683,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 19695};
+)glsl", 21167};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -1065,7 +1104,7 @@ float air;
 float sky;
 float sky_thickness;
 float diffuse;
-uint document;
+uint paper_form;
 uint by_particle;
 uint forward_point;
 float torn;
@@ -1160,6 +1199,45 @@ float y = steep ? ahead.z : 0.0f;
 float z = steep ? -ahead.y : ahead.x;
 float over = 1.0f / sqrt(x * x + y * y + z * z);
 return vec3(x * over, y * over, z * over);
+}
+struct puff_corner {
+vec3 offset;
+float over;
+};
+puff_corner puff_silhouette(vec3 centre, float radius, float x, float y) {
+float away2 = centre.x * centre.x + centre.y * centre.y + centre.z * centre.z;
+float away = sqrt(away2);
+puff_corner corner;
+corner.over = away / sqrt(away2 - radius * radius);
+vec3 ahead = centre * (1.0f / away);
+vec3 right = puff_right(ahead);
+vec3 up = vec3(right.y * ahead.z - right.z * ahead.y, right.z * ahead.x - right.x * ahead.z,
+right.x * ahead.y - right.y * ahead.x);
+float u = x * corner.over * radius;
+float v = y * corner.over * radius;
+corner.offset = right * u + up * v;
+return corner;
+}
+uint puff_corner_of(uint index) {
+uint k = index % 6u;
+return k < 3u ? k : (k == 3u ? 2u : (k == 4u ? 1u : 3u));
+}
+bool puff_finite(float x) { return (floatBitsToInt(x) & 2147483647) < 2139095040; }
+bool puff_drawn(float optical_depth, float radius, float albedo, float away2) {
+return puff_finite(optical_depth) && puff_finite(radius) && puff_finite(albedo) &&
+puff_finite(away2) && optical_depth > 0.0f && radius > 0.0f;
+}
+uint puff_mixed(uint hash, float value) {
+uint h = (hash ^ uint(floatBitsToInt(value))) * 2246822519u;
+return h ^ (h >> 15u);
+}
+uint puff_fingerprint(vec3 position, float radius, float optical_depth, float albedo) {
+uint h = puff_mixed(2654435769u, position.x);
+h = puff_mixed(h, position.y);
+h = puff_mixed(h, position.z);
+h = puff_mixed(h, radius);
+h = puff_mixed(h, optical_depth);
+return puff_mixed(h, albedo);
 }
 float puff_noise(vec3 place, float over) {
 float coarse = value_noise(place.x * over, place.y * over, place.z * over, 16384u);
@@ -1280,7 +1358,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 19710};
+)glsl", 21182};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 11de3259671e34f8f4c0eb9c8983888040daa7e541650940c552c9ac11fd4a5c
+// sha256 f338dbec61497a871885da14da06b37e2dac9d6079eb6dd15ba69e8c29ca6c9b
 #pragma once
 
 #include <skybark/kernels/torn_puff.hpp>
@@ -428,7 +428,7 @@ float air;
 float sky;
 float sky_thickness;
 float diffuse;
-uint document;
+uint paper_form;
 uint by_particle;
 uint forward_point;
 float torn;
@@ -524,6 +524,45 @@ float z = steep ? -ahead.y : ahead.x;
 float over = 1.0f / sqrt(x * x + y * y + z * z);
 return vec3(x * over, y * over, z * over);
 }
+struct puff_corner {
+vec3 offset;
+float over;
+};
+puff_corner puff_silhouette(vec3 centre, float radius, float x, float y) {
+float away2 = centre.x * centre.x + centre.y * centre.y + centre.z * centre.z;
+float away = sqrt(away2);
+puff_corner corner;
+corner.over = away / sqrt(away2 - radius * radius);
+vec3 ahead = centre * (1.0f / away);
+vec3 right = puff_right(ahead);
+vec3 up = vec3(right.y * ahead.z - right.z * ahead.y, right.z * ahead.x - right.x * ahead.z,
+right.x * ahead.y - right.y * ahead.x);
+float u = x * corner.over * radius;
+float v = y * corner.over * radius;
+corner.offset = right * u + up * v;
+return corner;
+}
+uint puff_corner_of(uint index) {
+uint k = index % 6u;
+return k < 3u ? k : (k == 3u ? 2u : (k == 4u ? 1u : 3u));
+}
+bool puff_finite(float x) { return (floatBitsToInt(x) & 2147483647) < 2139095040; }
+bool puff_drawn(float optical_depth, float radius, float albedo, float away2) {
+return puff_finite(optical_depth) && puff_finite(radius) && puff_finite(albedo) &&
+puff_finite(away2) && optical_depth > 0.0f && radius > 0.0f;
+}
+uint puff_mixed(uint hash, float value) {
+uint h = (hash ^ uint(floatBitsToInt(value))) * 2246822519u;
+return h ^ (h >> 15u);
+}
+uint puff_fingerprint(vec3 position, float radius, float optical_depth, float albedo) {
+uint h = puff_mixed(2654435769u, position.x);
+h = puff_mixed(h, position.y);
+h = puff_mixed(h, position.z);
+h = puff_mixed(h, radius);
+h = puff_mixed(h, optical_depth);
+return puff_mixed(h, albedo);
+}
 float puff_noise(vec3 place, float over) {
 float coarse = value_noise(place.x * over, place.y * over, place.z * over, 16384u);
 float twice = 2.17f * over;
@@ -577,8 +616,7 @@ layout(std430, binding = 5) readonly buffer lighting_buffer { cloud_lighting lig
 const float near_sides = 1.3;
 vec4 kernel_vertex(uint index) {
 uint number = order[index / 6u];
-uint k = index % 6u;
-uint which = k < 3u ? k : (k == 3u ? 2u : (k == 4u ? 1u : 3u));
+uint which = puff_corner_of(index);
 float x = (which & 1u) != 0u ? 1.0 : -1.0;
 float y = (which & 2u) != 0u ? 1.0 : -1.0;
 vec4 ball = particles[2u * number];
@@ -590,24 +628,24 @@ varying_out[0] = vec4(0.0);
 varying_out[1] = vec4(0.0);
 varying_out[2] = vec4(0.0);
 varying_out[3] = vec4(0.0);
-if (!(water.x > 0.0) || !(radius > 0.0) || !(away2 > near_sides * radius * radius)) {
+vec3 calm = rest[2u * number].xyz;
+if (!puff_drawn(water.x, radius, water.y, away2) || !puff_finite(dot(calm, calm)) ||
+!(away2 > near_sides * radius * radius)) {
 return vec4(0.0, 0.0, 2.0, 1.0);
 }
 float away = sqrt(away2);
-float side_half = away / sqrt(away2 - radius * radius);
-vec3 ahead = c * (1.0 / away);
-vec3 right = puff_right(ahead);
-vec3 up = cross(right, ahead);
-vec3 offset = (right * x + up * y) * (side_half * radius);
+puff_corner corner = puff_silhouette(c, radius, x, y);
+float u = x * corner.over;
+float v = y * corner.over;
 puff_radiance light = lights[number];
 float hidden = air_between(lighting.air, away);
-vec3 own = light.middle.xyz + (light.right.xyz * x + light.up.xyz * y) * side_half;
+vec3 own = light.middle.xyz + light.right.xyz * u + light.up.xyz * v;
 scaled_scattering scaled = scattering_without(water.y, lighting.forward);
-varying_out[0] = vec4(x * side_half, y * side_half, water.x * scaled.depth, 0.0);
+varying_out[0] = vec4(u, v, water.x * scaled.depth, 0.0);
 varying_out[1] = vec4(own * (1.0 - hidden), 0.0);
 varying_out[2] = vec4(light.air.xyz * hidden, 0.0);
-varying_out[3] = vec4(rest[2u * number].xyz + offset, radius);
-return scene.to_clip * vec4(ball.xyz + offset, 1.0);
+varying_out[3] = vec4(calm + corner.offset, radius);
+return scene.to_clip * vec4(ball.xyz + corner.offset, 1.0);
 }
 #endif
 #ifdef SKYBARK_FRAGMENT_STAGE
@@ -635,7 +673,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 19179};
+)glsl", 20538};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1054,7 +1092,7 @@ float air;
 float sky;
 float sky_thickness;
 float diffuse;
-uint document;
+uint paper_form;
 uint by_particle;
 uint forward_point;
 float torn;
@@ -1150,6 +1188,45 @@ float z = steep ? -ahead.y : ahead.x;
 float over = 1.0f / sqrt(x * x + y * y + z * z);
 return vec3(x * over, y * over, z * over);
 }
+struct puff_corner {
+vec3 offset;
+float over;
+};
+puff_corner puff_silhouette(vec3 centre, float radius, float x, float y) {
+float away2 = centre.x * centre.x + centre.y * centre.y + centre.z * centre.z;
+float away = sqrt(away2);
+puff_corner corner;
+corner.over = away / sqrt(away2 - radius * radius);
+vec3 ahead = centre * (1.0f / away);
+vec3 right = puff_right(ahead);
+vec3 up = vec3(right.y * ahead.z - right.z * ahead.y, right.z * ahead.x - right.x * ahead.z,
+right.x * ahead.y - right.y * ahead.x);
+float u = x * corner.over * radius;
+float v = y * corner.over * radius;
+corner.offset = right * u + up * v;
+return corner;
+}
+uint puff_corner_of(uint index) {
+uint k = index % 6u;
+return k < 3u ? k : (k == 3u ? 2u : (k == 4u ? 1u : 3u));
+}
+bool puff_finite(float x) { return (floatBitsToInt(x) & 2147483647) < 2139095040; }
+bool puff_drawn(float optical_depth, float radius, float albedo, float away2) {
+return puff_finite(optical_depth) && puff_finite(radius) && puff_finite(albedo) &&
+puff_finite(away2) && optical_depth > 0.0f && radius > 0.0f;
+}
+uint puff_mixed(uint hash, float value) {
+uint h = (hash ^ uint(floatBitsToInt(value))) * 2246822519u;
+return h ^ (h >> 15u);
+}
+uint puff_fingerprint(vec3 position, float radius, float optical_depth, float albedo) {
+uint h = puff_mixed(2654435769u, position.x);
+h = puff_mixed(h, position.y);
+h = puff_mixed(h, position.z);
+h = puff_mixed(h, radius);
+h = puff_mixed(h, optical_depth);
+return puff_mixed(h, albedo);
+}
 float puff_noise(vec3 place, float over) {
 float coarse = value_noise(place.x * over, place.y * over, place.z * over, 16384u);
 float twice = 2.17f * over;
@@ -1203,8 +1280,7 @@ layout(std430, binding = 5) readonly buffer lighting_buffer { cloud_lighting lig
 const float near_sides = 1.3;
 vec4 kernel_vertex(uint index) {
 uint number = order[index / 6u];
-uint k = index % 6u;
-uint which = k < 3u ? k : (k == 3u ? 2u : (k == 4u ? 1u : 3u));
+uint which = puff_corner_of(index);
 float x = (which & 1u) != 0u ? 1.0 : -1.0;
 float y = (which & 2u) != 0u ? 1.0 : -1.0;
 vec4 ball = particles[2u * number];
@@ -1216,24 +1292,24 @@ varying_out[0] = vec4(0.0);
 varying_out[1] = vec4(0.0);
 varying_out[2] = vec4(0.0);
 varying_out[3] = vec4(0.0);
-if (!(water.x > 0.0) || !(radius > 0.0) || !(away2 > near_sides * radius * radius)) {
+vec3 calm = rest[2u * number].xyz;
+if (!puff_drawn(water.x, radius, water.y, away2) || !puff_finite(dot(calm, calm)) ||
+!(away2 > near_sides * radius * radius)) {
 return vec4(0.0, 0.0, 2.0, 1.0);
 }
 float away = sqrt(away2);
-float side_half = away / sqrt(away2 - radius * radius);
-vec3 ahead = c * (1.0 / away);
-vec3 right = puff_right(ahead);
-vec3 up = cross(right, ahead);
-vec3 offset = (right * x + up * y) * (side_half * radius);
+puff_corner corner = puff_silhouette(c, radius, x, y);
+float u = x * corner.over;
+float v = y * corner.over;
 puff_radiance light = lights[number];
 float hidden = air_between(lighting.air, away);
-vec3 own = light.middle.xyz + (light.right.xyz * x + light.up.xyz * y) * side_half;
+vec3 own = light.middle.xyz + light.right.xyz * u + light.up.xyz * v;
 scaled_scattering scaled = scattering_without(water.y, lighting.forward);
-varying_out[0] = vec4(x * side_half, y * side_half, water.x * scaled.depth, 0.0);
+varying_out[0] = vec4(u, v, water.x * scaled.depth, 0.0);
 varying_out[1] = vec4(own * (1.0 - hidden), 0.0);
 varying_out[2] = vec4(light.air.xyz * hidden, 0.0);
-varying_out[3] = vec4(rest[2u * number].xyz + offset, radius);
-return scene.to_clip * vec4(ball.xyz + offset, 1.0);
+varying_out[3] = vec4(calm + corner.offset, radius);
+return scene.to_clip * vec4(ball.xyz + corner.offset, 1.0);
 }
 #endif
 #ifdef SKYBARK_FRAGMENT_STAGE
@@ -1265,7 +1341,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 19192};
+)glsl", 20551};
 };
 
 } // namespace skybark::opengl

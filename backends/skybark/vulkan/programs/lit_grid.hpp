@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f35d20e59249be6e89f3e2d2476c7fb114c5d056075d8ccfcd3641e330281c95
+// sha256 f39fca6b09e2ae632b2660bcf29eb1fb46aba1dd0d48d0173fde101877bde1c4
 #pragma once
 
 #include <skybark/kernels/lit_grid.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 613f93e6959ca83ff8eda5f4601891af4bbe85dd38ed2357728ec6006f3007ab
+// sha256 d30279a75a4e85279527a4eba4bbbcb7c030b4f0eee0d972e3d7b6c411fd685f
 #pragma once
 
 #include <skybark/kernels/puff_light.hpp>
