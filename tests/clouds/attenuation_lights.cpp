@@ -87,7 +87,7 @@ TEST_P(attenuation_lights, are_the_exact_sums_of_their_formulas) {
                                                      std::pair{attenuation_light::continuum, 0.25f},
                                                      std::pair{attenuation_light::product, 0.1074f},
                                                      std::pair{attenuation_light::product, 6.5f}}) {
-                    volume->set_light(light, forward);
+                    ASSERT_TRUE(volume->set_light(light, forward));
                     way.light = light;
                     way.forward = forward;
                     const auto values = lit(device, *volume, particles, *box);

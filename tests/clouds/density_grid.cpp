@@ -58,10 +58,7 @@ std::vector<float> lit(B& device, const std::vector<T>& values, const light_box&
 }
 
 light_box box_for(glm::vec3 sun, glm::uvec3 voxels) {
-    cloud_bounds bounds;
-    bounds.low = where.low;
-    bounds.high = where.high;
-    return *fit_light_box(bounds, sun, voxels);
+    return *fit_light_box(where, sun, voxels);
 }
 
 class grid_attenuation : public testing::TestWithParam<const char*> {};

@@ -17,6 +17,7 @@
 // `relight`, and nothing but the particles has to come from the host.
 
 #include <skybark/clouds/light_box.hpp>
+#include <skybark/clouds/phase.hpp>
 #include <skybark/core/backend.hpp>
 #include <skybark/kernels/grid_impulse.hpp>
 #include <skybark/kernels/particle_impulse.hpp>
@@ -54,8 +55,11 @@ struct attenuation_options {
     attenuation_method method = attenuation_method::impulse_scan;
     attenuation_profile profile = attenuation_profile::erf;
     attenuation_light light = attenuation_light::continuum;
-    float forward = 0; ///< f of `light`
-    float sigmas = 3;  ///< standard deviations of the Gaussian in a particle's radius
+    /// f of `light`: phase_function::forward_energy() for the continuum (below 1; 0 makes it the
+    /// extinction), forward_value() for the product (up to 1e6), unused for extinction. `light_of`
+    /// sets both.
+    float forward = 0;
+    float sigmas = 3; ///< standard deviations of the Gaussian in a particle's radius
     /// float16 halves the memory that is sampled. Rounding then moves −ln of the light by 2^-11 of
     /// itself at most, so the light by 0.00018 (at an attenuation of 1).
     volume_format format = volume_format::float32;
@@ -72,20 +76,34 @@ struct attenuation_options {
     std::uint64_t most_bytes = std::uint64_t{4} << 30;
 };
 
-/// Where a density grid lies in the world: an upright box, edge to edge.
-struct density_box {
-    glm::vec3 low{0};     ///< m
-    glm::vec3 high{1};    ///< m
-    float extinction = 1; ///< 1/m that a density of 1 means
-    float albedo = 1;
-};
+/// The light of droplets that scatter so, with the `forward` that belongs to it: the part of the
+/// energy that goes on forward (forward_energy) for the continuum, P(0) (forward_value) for the
+/// product, none for extinction.
+[[nodiscard]] inline attenuation_options
+light_of(const phase_function& phase, attenuation_light light = attenuation_light::continuum) {
+    attenuation_options options;
+    options.light = light;
+    if (light == attenuation_light::continuum) {
+        options.forward = static_cast<float>(phase.forward_energy());
+    } else if (light == attenuation_light::product) {
+        options.forward = static_cast<float>(phase.forward_value());
+    }
+    return options;
+}
 
-template <volume_backend B>
-requires accumulates<B, kernels::particle_impulse>
+/// A backend with all that the methods of an attenuation volume need.
+template <class B>
+concept relights_volumes = volume_backend<B> && accumulates<B, kernels::particle_impulse> &&
+    accumulates<B, kernels::shadow_slab> && expands<B, kernels::shadow_slab> &&
+    accumulates<B, kernels::shadow_polygon>;
+
+template <relights_volumes B>
 class attenuation_volume {
   public:
     /// Volumes of `voxels` (each side 4 or more): one of `format` to sample, one of int32 to sum
-    /// in. Fails with bad_input where they would take more than most_bytes, and as the device does.
+    /// in. Errors: bad_input for options that make no sense, volumes that take more than
+    /// most_bytes, and a list too short for the rectangles of a particle that fills the volume;
+    /// what the device says.
     [[nodiscard]] static result<attenuation_volume>
     create(B& device, glm::uvec3 voxels, const attenuation_options& options = {}) {
         if (auto done = detail::check_voxels(voxels); !done) {
@@ -95,6 +113,9 @@ class attenuation_volume {
             return failure(done.error());
         }
         attenuation_volume made(device, voxels, options);
+        if (auto done = made.check_list(); !done) {
+            return failure(done.error());
+        }
         auto sums = device.create_volume({voxels.x, voxels.y, voxels.z, volume_format::int32});
         if (!sums) {
             return failure(sums.error());
@@ -107,9 +128,7 @@ class attenuation_volume {
         made.volume_.emplace(std::move(*volume));
         if (options.method == attenuation_method::shadow_polygons &&
             options.polygons == polygon_source::list) {
-            auto list = device.create_buffer(
-                std::min(options.list_bytes, device.limits().max_buffer_bytes) / slab_bytes *
-                slab_bytes);
+            auto list = device.create_buffer(made.list_bytes());
             if (!list) {
                 return failure(list.error());
             }
@@ -124,11 +143,13 @@ class attenuation_volume {
     }
 
     /// Records the whole volume for `count` particles (`cloud_particle`s on the device, in any
-    /// order; none is allowed: no attenuation). `box` was fitted to them, for as many voxels.
+    /// order; none is allowed: no attenuation). `box` was fitted to them, for as many voxels. Of
+    /// particles that nobody has checked, a depth or an albedo that is no number, or below 0,
+    /// counts as 0, and a larger one as the largest that `check_particles` takes.
     void relight(typename B::recorder& recorder, const buffer_view<B>& particles,
                  std::uint32_t count, const light_box& box) {
-        assert_box(box);
-        box_ = box;
+        assert((count == 0 || box.largest_radius > 0) && "a box that was fitted to no particles");
+        take(box);
         if (options_.method == attenuation_method::impulse_scan) {
             sum_impulses(recorder, particles, count);
         } else if (options_.polygons == polygon_source::list) {
@@ -142,12 +163,14 @@ class attenuation_volume {
     }
 
     /// The same for a density grid: the sum runs to the middle of each voxel. `density` is a volume
-    /// of float32 or float16.
+    /// of float32 or float16, of finite numbers from 0. After prepare_for_grids; `where` passes
+    /// check_density_box, as it has when `box` was fitted to it.
     void relight(typename B::recorder& recorder, const typename B::volume& density,
                  const density_box& where,
                  const light_box& box) requires maps_voxels<B, kernels::grid_impulse> {
-        assert_box(box);
-        box_ = box;
+        assert(impulses_ && "prepare_for_grids comes before");
+        assert(check_density_box(where) && "a density grid that cannot be lit");
+        take(box);
         kernels::grid_impulse impulse;
         impulse.grid = box.grid;
         const glm::vec3 size = where.high - where.low;
@@ -162,9 +185,18 @@ class attenuation_volume {
         recorder.scan(*impulses_, *volume_, how);
     }
 
-    /// Makes what `relight` with a density grid needs beyond the rest: a volume of float32.
+    /// Makes what `relight` with a density grid needs beyond the rest: a volume of float32. From
+    /// then on the light is extinction or the continuum; a grid has no particles to multiply.
+    /// Errors: bad_input where all volumes would take more than most_bytes, or for the product's
+    /// light; what the device says.
     [[nodiscard]] result<void> prepare_for_grids(B& device) {
         if (!impulses_) {
+            if (auto done = check_light(options_, true); !done) {
+                return done;
+            }
+            if (auto done = check_bytes(voxels_, options_, 4); !done) {
+                return done;
+            }
             auto made =
                 device.create_volume({voxels_.x, voxels_.y, voxels_.z, volume_format::float32});
             if (!made) {
@@ -179,13 +211,21 @@ class attenuation_volume {
     /// cells_of(grid, place) / voxels; above the box and beside it there is no attenuation, below
     /// it the undermost layer goes on.
     [[nodiscard]] const typename B::volume& volume() const { return *volume_; }
-    /// Where the volume lies: that of the latest `relight`.
+    /// Where the volume lies: that of the latest `relight`. Its voxel.w is the quantum of the sums,
+    /// for the product a coarser one than the fit's where that could not hold them.
     [[nodiscard]] const light_box& box() const noexcept { return box_; }
     [[nodiscard]] const attenuation_options& options() const noexcept { return options_; }
-    /// For the next `relight`.
-    void set_light(attenuation_light light, float forward) {
-        options_.light = light;
-        options_.forward = forward;
+    /// For the next `relight`. Errors: bad_input as from `create`, and for the product's light
+    /// after prepare_for_grids; then nothing is changed.
+    [[nodiscard]] result<void> set_light(attenuation_light light, float forward) {
+        attenuation_options next = options_;
+        next.light = light;
+        next.forward = forward;
+        if (auto done = check_light(next, impulses_.has_value()); !done) {
+            return done;
+        }
+        options_ = next;
+        return {};
     }
 
     /// The parameters that the kernels get for a box: for those who compose the patterns
@@ -194,12 +234,16 @@ class attenuation_volume {
                                                           const light_box& box) {
         kernels::particle_shade shade;
         shade.grid = box.grid;
+        shade.grid.voxel.w = quantum_of(options, box);
         shade.sigmas = options.sigmas;
         shade.forward = options.forward;
         shade.light = static_cast<std::uint32_t>(options.light);
         shade.profile = options.profile == attenuation_profile::erf ? 1 : 0;
-        // One more than fit: rounding may add one.
-        shade.slices = static_cast<std::uint32_t>(2 * box.largest_radius / box.grid.voxel.z) + 2;
+        // One more than fit: rounding may add one. No more than there are in a volume.
+        shade.slices =
+            static_cast<std::uint32_t>(std::min(2 * box.largest_radius / box.grid.voxel.z,
+                                                static_cast<float>(box.voxels.z))) +
+            2;
         return shade;
     }
 
@@ -222,33 +266,103 @@ class attenuation_volume {
                                                    std::to_string(device.limits().max_volume_size) +
                                                    ".");
         }
-        // Three sides of at most 65,536 and 8 bytes: below 2^51.
-        const std::uint64_t bytes =
-            std::uint64_t{voxels.x} * voxels.y * voxels.z * (4 + bytes_per_voxel(options.format));
-        if (bytes > options.most_bytes) {
-            return fail(error_code::bad_input,
-                        "An attenuation volume of " + size + " voxels takes " +
-                            std::to_string(bytes >> 20) + " MiB; at most " +
-                            std::to_string(options.most_bytes >> 20) + " MiB are allowed.");
+        if (auto done = check_bytes(voxels, options, 0); !done) {
+            return done;
         }
         if (!(options.sigmas > 0 && options.sigmas <= 9) ||
-            !(options.forward >= 0 && options.forward <= 1e6f) ||
-            (options.light == attenuation_light::continuum && options.forward > 1) ||
             options.format == volume_format::int32) {
             return fail(error_code::bad_input,
                         "An attenuation volume was asked for with " +
                             std::to_string(options.sigmas) +
-                            " standard deviations in a radius "
-                            "and a forward part of " +
-                            std::to_string(options.forward) +
-                            "; expected above 0 to 9, 0 to 1 (with the product 0 to 1e6), and a "
-                            "format of floats.");
+                            " standard deviations in a radius; expected above 0 to 9, and a format "
+                            "of floats.");
+        }
+        return check_light(options, false);
+    }
+
+    /// Whether the volumes, of which some take `more` bytes a voxel, are not too large.
+    [[nodiscard]] static result<void>
+    check_bytes(glm::uvec3 voxels, const attenuation_options& options, std::uint64_t more) {
+        // Three sides of at most 65,536 and 12 bytes: below 2^52.
+        const std::uint64_t bytes = std::uint64_t{voxels.x} * voxels.y * voxels.z *
+                                    (4 + bytes_per_voxel(options.format) + more);
+        if (bytes > options.most_bytes) {
+            return fail(error_code::bad_input,
+                        "An attenuation volume of " + std::to_string(voxels.x) + " x " +
+                            std::to_string(voxels.y) + " x " + std::to_string(voxels.z) +
+                            " voxels takes " + std::to_string(bytes >> 20) + " MiB; at most " +
+                            std::to_string(options.most_bytes >> 20) + " MiB are allowed.");
         }
         return {};
     }
 
-    void assert_box([[maybe_unused]] const light_box& box) const {
+    /// Without a forward part below 1 the continuum would leave nothing to scatter.
+    [[nodiscard]] static result<void> check_light(const attenuation_options& options,
+                                                  bool for_grids) {
+        const bool continuum = options.light == attenuation_light::continuum;
+        if (!(options.forward >= 0 && options.forward <= 1e6f) ||
+            (continuum && !(options.forward < 1))) {
+            return fail(error_code::bad_input,
+                        std::string("An attenuation volume was asked for with a forward part of ")
+                            .append(detail::number_text(options.forward))
+                            .append("; expected 0 to below 1 for the continuum, and 0 to 1e6 for "
+                                    "other light."));
+        }
+        if (for_grids && options.light == attenuation_light::product) {
+            return fail(error_code::bad_input,
+                        "The product's light was asked for of a density grid, which has no "
+                        "particles to multiply; expected extinction or the continuum.");
+        }
+        return {};
+    }
+
+    /// As large as is allowed, in whole rectangles.
+    [[nodiscard]] std::uint64_t list_bytes() const {
+        return std::min(options_.list_bytes, limits_.max_buffer_bytes) / slab_bytes * slab_bytes;
+    }
+
+    /// Particles go through the list in multiples of this, so that views of them start where views
+    /// may.
+    [[nodiscard]] std::uint64_t list_step() const {
+        return std::max<std::uint64_t>(1, limits_.view_alignment / sizeof(cloud_particle));
+    }
+
+    /// Whether the list holds the rectangles of a step of the largest particles.
+    [[nodiscard]] result<void> check_list() const {
+        if (options_.method != attenuation_method::shadow_polygons ||
+            options_.polygons != polygon_source::list) {
+            return {};
+        }
+        const std::uint64_t slices = std::uint64_t{voxels_.z} + 2;
+        const std::uint64_t least = slab_bytes * slices * list_step();
+        if (list_bytes() < least || limits_.max_elements < 2 * slices * list_step()) {
+            return fail(error_code::bad_input,
+                        std::string("A list of ")
+                            .append(std::to_string(list_bytes()))
+                            .append(" bytes was asked for, for the rectangles of a volume with ")
+                            .append(std::to_string(voxels_.z))
+                            .append(" layers; on this device it takes ")
+                            .append(std::to_string(least))
+                            .append(" at least."));
+        }
+        return {};
+    }
+
+    /// −ln G of a particle lies between −ln(1 + aτf) and τ, and so within τ max(1, f): what the
+    /// product's sums need in place of Σ τ.
+    [[nodiscard]] static float quantum_of(const attenuation_options& options,
+                                          const light_box& box) {
+        if (options.light != attenuation_light::product) {
+            return box.grid.voxel.w;
+        }
+        const double deepest = double{box.deepest} * std::max(1.0, double{options.forward});
+        return std::max(box.grid.voxel.w, detail::quantum_for(deepest));
+    }
+
+    void take(const light_box& box) {
         assert(box.voxels == voxels_ && "a box that was fitted for another volume");
+        box_ = box;
+        box_.grid.voxel.w = quantum_of(options_, box);
     }
 
     [[nodiscard]] kernels::particle_shade shade() const { return shade_of(options_, box_); }
@@ -293,13 +407,12 @@ class attenuation_volume {
         }
     }
 
-    /// As many particles as fit into the list, so that views of them start where views may.
+    /// As many particles as fit into the list: a step at least, by check_list.
     [[nodiscard]] std::uint32_t chunk_of(std::uint32_t slices) const {
-        const std::uint64_t step =
-            std::max<std::uint64_t>(1, limits_.view_alignment / sizeof(cloud_particle));
-        const std::uint64_t fit = list_->size_bytes() / (slab_bytes * slices) / step * step;
-        return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
-            fit, step, std::min<std::uint64_t>(limits_.max_elements / (2 * slices), 1u << 23)));
+        const std::uint64_t fit =
+            std::min({list_->size_bytes() / (slab_bytes * slices),
+                      limits_.max_elements / (std::uint64_t{2} * slices), std::uint64_t{1} << 23});
+        return static_cast<std::uint32_t>(fit / list_step() * list_step());
     }
 
     void convert(typename B::recorder& recorder) {
@@ -314,7 +427,8 @@ class attenuation_volume {
         return options_.light == attenuation_light::continuum ? 1 - albedo * options_.forward : 1;
     }
 
-    /// So many that no voxel of the density grid is stepped over: 1 to 4.
+    /// Along each axis of the light's voxel as many samples as it has voxels of the density grid,
+    /// so that none is stepped over, but no more than 4: finer grids are sampled here and there.
     [[nodiscard]] float samples_for(const volume_description& density, glm::vec3 size) const {
         const glm::vec3 step = size / glm::vec3(density.width, density.height, density.depth);
         const float finest = std::min({step.x, step.y, step.z});

@@ -137,7 +137,7 @@ struct drift_bounds {
     }
     return light_box{
         detail::place_grid(axes, low, high, voxels, detail::quantum_for(double{bounds.deepest})),
-        voxels, bounds.largest_radius};
+        voxels, bounds.largest_radius, bounds.deepest};
 }
 
 template <backend B>

@@ -29,15 +29,25 @@ namespace skybark::clouds {
 struct light_box {
     light_grid grid;
     glm::uvec3 voxels{0};
-    float largest_radius = 0; ///< of a particle, m
+    float largest_radius = 0; ///< of a particle, m; 0 for a density grid
+    float deepest = 0;        ///< no line along the light has more optical depth than this
 };
 
-/// What a fit needs to know of a cloud whose particles are on the device only.
+/// What a fit needs to know of a cloud whose particles are on the device only. A radius or a depth
+/// that is less than the cloud's takes layers from the largest particles, and lets sums overflow.
 struct cloud_bounds {
     glm::vec3 low{0};         ///< m, with the radii
     glm::vec3 high{0};        ///< m, with the radii
-    float largest_radius = 0; ///< m
+    float largest_radius = 0; ///< m, above 0
     float deepest = 100;      ///< no straight line has more optical depth than this
+};
+
+/// Where a density grid lies in the world: an upright box, edge to edge.
+struct density_box {
+    glm::vec3 low{0};     ///< m
+    glm::vec3 high{1};    ///< m
+    float extinction = 1; ///< 1/m that a density of 1 means
+    float albedo = 1;
 };
 
 /// Light sums are whole numbers of this much attenuation, where the deepest column allows it.
@@ -266,11 +276,11 @@ class column_depths {
         columns.add({at.x, at.z}, double(p.radius), double(p.optical_depth));
     }
     box.grid = detail::place_grid(axes, low, high, voxels, detail::quantum_for(columns.deepest()));
+    box.deepest = static_cast<float>(columns.deepest());
     return box;
 }
 
-/// The same around a box of the world, in no time: looser, for particles that the host never sees
-/// and for density grids.
+/// The same around a box of the world, in no time: looser, for particles that the host never sees.
 [[nodiscard]] inline result<light_box> fit_light_box(const cloud_bounds& bounds, glm::vec3 to_sun,
                                                      glm::uvec3 voxels) {
     for (const result<void>& done : {detail::check_voxels(voxels), detail::check_sun(to_sun)}) {
@@ -315,7 +325,42 @@ class column_depths {
     }
     return light_box{
         detail::place_grid(axes, low, high, voxels, detail::quantum_for(double(bounds.deepest))),
-        voxels, bounds.largest_radius};
+        voxels, bounds.largest_radius, bounds.deepest};
+}
+
+/// Whether a density grid can be lit there: sides from 1e-6 to 1e15 m, an extinction from 0 to 1e15
+/// 1/m, an albedo from 0 to 1. Errors: bad_input.
+[[nodiscard]] inline result<void> check_density_box(const density_box& where) {
+    const glm::vec3 size = where.high - where.low;
+    bool sides = true;
+    for (int a = 0; a < 3; ++a) {
+        sides = sides && size[a] >= detail::smallest_cloud && size[a] <= detail::largest_cloud;
+    }
+    if (!sides || !(where.extinction >= 0 && where.extinction <= 1e15f) ||
+        !(where.albedo >= 0 && where.albedo <= 1)) {
+        return fail(error_code::bad_input,
+                    std::string("A density grid of ")
+                        .append(detail::size_text(size))
+                        .append(" m, extinction ")
+                        .append(detail::number_text(where.extinction))
+                        .append(" 1/m and albedo ")
+                        .append(detail::number_text(where.albedo))
+                        .append(" cannot be lit; expected sides from 1e-6 to 1e15 m, an extinction "
+                                "from 0 to 1e15 and an albedo from 0 to 1."));
+    }
+    return {};
+}
+
+/// The same around a density grid. Errors: also those of check_density_box.
+[[nodiscard]] inline result<light_box> fit_light_box(const density_box& where, glm::vec3 to_sun,
+                                                     glm::uvec3 voxels) {
+    if (auto done = check_density_box(where); !done) {
+        return failure(done.error());
+    }
+    cloud_bounds bounds;
+    bounds.low = where.low;
+    bounds.high = where.high;
+    return fit_light_box(bounds, to_sun, voxels);
 }
 
 } // namespace skybark::clouds
