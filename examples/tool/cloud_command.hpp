@@ -96,10 +96,7 @@ class cloud_maker {
                 return failure(done.error());
             }
         }
-        clouds::cloud_bounds bounds;
-        bounds.low = job_.low;
-        bounds.high = job_.high;
-        auto box = job_.is_grid() ? clouds::fit_light_box(bounds, towards, voxels)
+        auto box = job_.is_grid() ? clouds::fit_light_box(where(), towards, voxels)
                                   : clouds::fit_light_box(job_.particles, towards, voxels);
         if (!box) {
             return about_input(box.error());
@@ -109,7 +106,9 @@ class cloud_maker {
 
     [[nodiscard]] result<void> relight(lit_volume& lit, clouds::attenuation_light light) {
         job_.time.begin("light");
-        lit.volume.set_light(light, forward_of(light));
+        if (auto done = lit.volume.set_light(light, forward_of(light)); !done) {
+            return done;
+        }
         return run(device_, [&](typename B::recorder& to) {
             if (job_.is_grid()) {
                 lit.volume.relight(to, *density_, where(), lit.box);
