@@ -12,6 +12,15 @@ namespace {
 constexpr std::size_t no_column = ~std::size_t{0};
 constexpr std::size_t longest_line = std::size_t{1} << 20u;
 
+/// In any letter case.
+bool is_name(std::string_view name, std::string_view field) {
+    const auto lower = [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    };
+    return std::equal(name.begin(), name.end(), field.begin(), field.end(),
+                      [&](char a, char b) { return lower(a) == lower(b); });
+}
+
 } // namespace
 
 number_table::number_table(std::string_view name, std::string_view rows,
@@ -83,7 +92,7 @@ result<void> number_table::header(std::string_view text) {
     bool more = true;
     while (next_field(rest, more, separator_, field)) {
         const auto at = std::find_if(columns_.begin(), columns_.end(),
-                                     [&](const table_column& c) { return c.name == field; });
+                                     [&](const table_column& c) { return is_name(c.name, field); });
         const auto c = static_cast<std::size_t>(at - columns_.begin());
         column_at_.push_back(at == columns_.end() ? no_column : c);
         if (at == columns_.end())

@@ -72,6 +72,18 @@ TEST(read_particles, finds_columns_by_name_in_any_order) {
     }
 }
 
+TEST(read_particles, knows_columns_in_any_letter_case) {
+    const auto read =
+        io::parse_particles("X,y,Z,Radius,OPTICAL_DEPTH,aLbEdO\n1,2,3,4,5,0.5\n", "t");
+    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_EQ(read->size(), 1u);
+    EXPECT_EQ((*read)[0].position, glm::vec3(1, 2, 3));
+    EXPECT_EQ((*read)[0].radius, 4.0f);
+    EXPECT_EQ((*read)[0].optical_depth, 5.0f);
+    EXPECT_EQ((*read)[0].albedo, 0.5f);
+    EXPECT_TRUE(has(complaint("x,X,y,z,radius,optical_depth,albedo\n"), "\"X\" is there twice"));
+}
+
 TEST(read_particles, takes_a_text_in_pieces_of_any_length) {
     const std::string text = "# c\n" + header + "1,2,3,4,5,0.5\n\n6,7,8,9,10,1";
     const io::table_column columns[] = {{"radius", 0, 1e9, "a number"}, {"z", 0, 1e9, "a number"}};
