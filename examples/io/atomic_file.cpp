@@ -2,6 +2,7 @@
 
 #include <io/text_input.hpp>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -94,6 +95,13 @@ result<void> check_target(const std::string& path, const std::string& target) {
     }
     if (fs::is_directory(target, error) || fs::path(target).filename().empty()) {
         return fail_file(path, "can't be written: it is a folder.");
+    }
+    const auto longest =
+        static_cast<std::size_t>(std::max(0l, ::pathconf(folder.c_str(), _PC_NAME_MAX)));
+    const std::size_t length = fs::path(target).filename().native().size();
+    if (longest > 0 && length > longest) {
+        return fail_file(path, "can't be written: its name has " + std::to_string(length) +
+                                   " bytes; expected at most " + std::to_string(longest) + ".");
     }
     return {};
 }

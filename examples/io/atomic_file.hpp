@@ -17,7 +17,8 @@ namespace skybark::io {
 /// /dev/stdout) is written to directly, since a rename would replace the device by a file.
 class atomic_file {
   public:
-    /// Errors: the folder isn't there or can't be written to; `path` is a directory.
+    /// Errors: the folder isn't there or can't be written to; `path` is a directory, or its name is
+    /// longer than the file system takes.
     [[nodiscard]] static result<atomic_file> create(const std::string& path);
 
     atomic_file(atomic_file&& other) noexcept;

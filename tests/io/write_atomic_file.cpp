@@ -48,6 +48,21 @@ TEST_F(atomic_file, appears_when_committed) {
     EXPECT_EQ(files(), 1u);
 }
 
+// A rename that fails would come after all of the work.
+TEST_F(atomic_file, knows_names_that_are_too_long) {
+    const std::string longest = (folder / std::string(255, 'n')).string();
+    EXPECT_TRUE(io::check_writable(longest));
+    ASSERT_TRUE(io::write_file(longest, "all"));
+    for (const auto& refused :
+         {io::check_writable(longest + "n"), io::write_file(longest + "n", "")}) {
+        ASSERT_FALSE(refused);
+        EXPECT_NE(refused.error().message.find("its name has 256 bytes; expected at most 255."),
+                  std::string::npos)
+            << refused.error().message;
+    }
+    EXPECT_EQ(files(), 1u);
+}
+
 TEST_F(atomic_file, leaves_the_old_file_when_abandoned) {
     put("old");
     {
