@@ -22,7 +22,7 @@ UNAVAILABLE = 3
 SMALL = "40x30"
 # What makes each command quick: options whose value is replaced, and added where they are missing.
 SMALLER = {"tree": {"--size": SMALL, "--lod": "16"},
-           "cloud": {"--size": SMALL, "--volume": "16"},
+           "cloud": {"--volume": "16"},
            "gather": {"--size": SMALL},
            "meadow": {"--size": SMALL, "--trees": "1", "--grass": "0.02", "--directions": "2", "--bounces": "1",
                       "--cloud-voxels": "16", "--supersampling": "1"}}
@@ -49,7 +49,7 @@ FILES = {"room.obj": ROOM_OBJ,
          "particles.csv": "x,y,z,radius,optical_depth,albedo\n0,0,0,10,2,1\n5,8,0,10,2,1\n",
          "scan.csv": (ROOT / "tests/fuzz/corpus/qsm/comma.csv").read_text(encoding="utf-8")}
 # Files that the tool itself makes of those.
-MADE = {"density.vdb": ["cloud", "particles.csv", "--volume", "16", "-o", "density.vdb"],
+MADE = {"density.vdb": ["cloud", "particles.csv", "--volume", "16", "--light", "octaves", "-o", "density.vdb"],
         "room.glb": ["tree", "scan.csv", "--no-leaves", "-o", "room.glb"]}
 
 
@@ -86,6 +86,8 @@ def made_small(words):
         words = with_option(words, "--directions", "2")
     if "--bounces" in words and words[0] == "gather":
         words = with_option(words, "--bounce-directions", "2")
+    if words[0] == "cloud" and any(word.endswith(".png") for word in words):
+        words = with_option(words, "--size", SMALL)
     if words[0] == "cloud" and words[1].startswith("cumulus"):
         words = with_option(words, "--particles", "100")
     return words

@@ -15,7 +15,9 @@ failure fail_without(const std::string& path) {
 
 } // namespace
 
-result<density_grid> read_vdb(const std::string& path) { return fail_without(path); }
+result<density_grid> read_vdb(const std::string& path, std::string_view) {
+    return fail_without(path);
+}
 
 result<void> write_vdb(const std::string& path, std::span<const vdb_volume>) {
     return fail_without(path);
