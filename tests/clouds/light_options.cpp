@@ -223,6 +223,62 @@ TEST(light_option, layers_of_a_particle_end_with_those_of_the_volume) {
     }
 }
 
+// What a simulation may leave behind where nobody checks: no light is made of it, on any device.
+TEST_P(light_options, particles_that_make_no_sense_make_no_light) {
+    with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        cloud_bounds bounds;
+        bounds.low = glm::vec3(-1);
+        bounds.high = glm::vec3(1);
+        bounds.largest_radius = 1;
+        const glm::uvec3 voxels(15);
+        const auto box = fit_light_box(bounds, {0, 1, 0}, voxels);
+        ASSERT_TRUE(box);
+        struct senseless {
+            float depth;
+            float albedo;
+            double least; // −ln of the light behind nine of them
+            double most;
+        };
+        // The middle column passes the axis half a voxel of 0.171 aside both ways: it meets
+        // e^(−4.5 · 2 · 0.0855²) = 0.936 of the depth. Of one that 100 in all does not foresee, 16
+        // are left: 2^26 quanta of 2^-22.
+        const senseless cases[] = {{not_a_number, 1, 0, 0},  {-3, 1, 0, 0},
+                                   {-infinity, 1, 0, 0},     {infinity, 1, 16, 144},
+                                   {3e38f, 1, 16, 144},      {1e6f, 0, 16, 144},
+                                   {0.1f, 1e30f, 0.84, 0.9}, {0.1f, infinity, 0.84, 0.9},
+                                   {0.1f, -5, 0.84, 0.9},    {0.1f, not_a_number, 0.84, 0.9}};
+        for (const auto light : {attenuation_light::extinction, attenuation_light::continuum,
+                                 attenuation_light::product}) {
+            const bool product = light == attenuation_light::product;
+            for (const attenuation_options& way : ways(light, product ? 5 : 0.5f)) {
+                auto volume = attenuation_volume<B>::create(device, voxels, way);
+                ASSERT_TRUE(volume);
+                for (const senseless& c : cases) {
+                    cloud_particle p;
+                    p.radius = 1;
+                    p.optical_depth = c.depth;
+                    p.albedo = c.albedo;
+                    const std::vector<cloud_particle> particles(9, p);
+                    const auto values = lit(device, *volume, particles, *box);
+                    ASSERT_TRUE(values);
+                    // The product amplifies, but no more than nine white particles that make sense.
+                    const double least = product ? -9 * std::log(1 + 5e6) : 0;
+                    for (const float value : *values) {
+                        ASSERT_TRUE(value >= least && double{value} <= c.most * 1.000001)
+                            << value << " of depth " << c.depth << ", albedo " << c.albedo;
+                    }
+                    const bool thinned =
+                        light == attenuation_light::continuum && !(c.depth > 1) && c.albedo > 0;
+                    EXPECT_GE(double{(*values)[index_of(voxels, 7, 0, 7)]},
+                              product ? least : (thinned ? 0.5 : 1.0) * c.least)
+                        << "depth " << c.depth << ", albedo " << c.albedo;
+                }
+            }
+        }
+    });
+}
+
 INSTANTIATE_TEST_SUITE_P(backends, light_options, testing::Values("cpu", "opengl", "vulkan"),
                          [](const auto& of) { return std::string(of.param); });
 

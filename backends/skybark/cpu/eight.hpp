@@ -244,6 +244,12 @@ template <class V>
     return choose(less(u, splat<V>(0.0f)), minus(splat<V>(1.0f), tail), tail);
 }
 
+template <class V>
+[[gnu::target("avx2"), gnu::always_inline]] inline V summable(V amount) {
+    const V dark = both(less(splat<V>(0.0f), amount), splat<V>(67108864.0f));
+    return choose(less(amount, splat<V>(2147483520.0f)), amount, dark);
+}
+
 /// Whole numbers of quanta.
 [[gnu::target("avx2"), gnu::always_inline]] inline i8 quanta(f8 amount) {
     return _mm256_cvttps_epi32(down(plus(amount, _mm256_set1_ps(0.5f))));

@@ -82,14 +82,14 @@ struct program<kernels::harris_splat> : plain_program<kernels::harris_splat> {
         using namespace eight;
         const f8 r2 = splat<f8>(p.radius * p.radius);
         const f8 steepness = splat<f8>(0.5f * k.sigmas * k.sigmas);
+        const f8 depth = splat<f8>(shared::bounded(p.optical_depth, 1e6f));
         const f8 lanes = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
         for (int x = begin; x < end; x += 8) {
             const f8 column = plus(splat<f8>(static_cast<float>(x)), lanes);
             const f8 dx = times(minus(plus(column, splat<f8>(0.5f)), splat<f8>(centre)),
                                 splat<f8>(k.grid.voxel.x));
             const f8 d2 = plus(times(dx, dx), splat<f8>(dz * dz));
-            const f8 tau =
-                times(splat<f8>(p.optical_depth), exp_minus(over(times(steepness, d2), r2)));
+            const f8 tau = times(depth, exp_minus(over(times(steepness, d2), r2)));
             _mm256_storeu_ps(depths + (x - begin), _mm256_and_ps(less(d2, r2), tau));
         }
     }

@@ -214,10 +214,9 @@ class particle_bins {
         to.x = at.centre.x;
         to.z = at.centre.z;
         to.radius2 = p.radius * p.radius;
-        to.optical_depth = p.optical_depth;
-        to.kept = shade.light == 0   ? 1.0f
-                  : shade.light == 1 ? 1.0f - p.albedo * shade.forward
-                                     : p.albedo * shade.forward;
+        to.optical_depth = shared::bounded(p.optical_depth, 1e6f);
+        const float forward = shared::bounded(p.albedo, 1.0f) * shade.forward;
+        to.kept = shade.light == 0 ? 1.0f : shade.light == 1 ? 1.0f - forward : forward;
         to.first = all.first;
         to.end = all.end;
         to.top = all.top;
@@ -306,6 +305,7 @@ class particle_bins {
         amount = shades_.inverse_quantum != 0.0f
                      ? times(amount, splat<f32>(shades_.inverse_quantum))
                      : over(amount, splat<f32>(shades_.quantum));
+        amount = summable(amount);
         out[0] = amount.a;
         out[1] = amount.b;
         out[2] = amount.c;

@@ -13,8 +13,9 @@
 //
 // The same options give the same particles. Extinction: 1.5 · liquid water / (density of water ·
 // radius of droplets). 0.3 g/m³ of droplets with a radius of 10 µm, as in small fair-weather
-// clouds, make 0.045 1/m; 1.3 g/m³, what rising air condenses over 700 m, in droplets of 5 µm 0.4
-// 1/m: that gives hard edges.
+// clouds, make 0.045 1/m; 1.3 g/m³, what rising air condenses over 700 m, in droplets with a radius
+// of 5 µm 0.4 1/m: that gives hard edges. phase_function::mie takes the diameter: mie(20) for a
+// radius of 10 µm.
 
 #include <skybark/core/records.hpp>
 
@@ -30,7 +31,15 @@
 
 namespace skybark::clouds {
 
-/// One cloud. Numbers that are not finite, or not above 0 where a size is meant, make no cloud.
+/// As many particles are made at most, of a cloud or a field. While a cloud is made, each takes
+/// about 300 bytes.
+inline constexpr std::uint32_t most_cumulus_particles = 1u << 22;
+/// As many clouds are in a field at most.
+inline constexpr std::uint32_t most_cumulus_clouds = 4096;
+
+/// One cloud. Width and thickness: 1 mm to 1000 km, neither more than 50 times the other. Beyond
+/// that, of more than most_cumulus_particles, of numbers that are not finite and of an extinction
+/// that is not above 0 and up to 10^6 1/m, no cloud is made.
 struct cumulus_options {
     std::uint64_t seed = 1;
     glm::vec3 base{0, 900, 0};       ///< m, the middle of the level base
@@ -41,7 +50,9 @@ struct cumulus_options {
     float albedo = 1;                ///< of a single scattering
 };
 
-/// Clouds of several sizes over a square, none on top of another where there is room.
+/// Clouds of several sizes over a square, none on top of another where there is room. The largest
+/// keeps to the limits of one cloud, all particles together to most_cumulus_particles; else, and of
+/// more than most_cumulus_clouds, no cloud is made.
 struct cumulus_field_options {
     std::uint64_t seed = 1;
     glm::vec3 centre{0, 900, 0}; ///< m, the middle of the square; y: altitude of the bases
@@ -192,17 +203,42 @@ inline std::vector<cumulus_ball> cumulus_towers(cumulus_random& random, double h
     return balls;
 }
 
-/// Whether a new ball would only lie inside one of the `count` that are there.
-inline bool cumulus_buried(const cumulus_ball* balls, std::size_t count, glm::dvec3 centre,
-                           double radius) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const double room = balls[i].radius - 0.35 * radius;
-        const glm::dvec3 d = balls[i].centre - centre;
-        if (room > 0 && glm::dot(d, d) < room * room) {
-            return true;
-        }
+/// The box around balls.
+struct cumulus_bounds {
+    glm::dvec3 low{0};
+    glm::dvec3 high{0};
+};
+inline cumulus_bounds cumulus_around(const std::vector<cumulus_ball>& balls) {
+    cumulus_bounds box;
+    for (const cumulus_ball& b : balls) {
+        box.low = glm::min(box.low, b.centre - b.radius);
+        box.high = glm::max(box.high, b.centre + b.radius);
     }
-    return false;
+    return box;
+}
+
+/// Puts the balls from number `first` on into the cubes that they reach into.
+inline void cumulus_enter(cumulus_cells& cells, const std::vector<cumulus_ball>& balls,
+                          std::size_t first) {
+    for (std::size_t i = first; i < balls.size(); ++i) {
+        cells.around(balls[i].centre, balls[i].radius, [&](std::vector<std::uint32_t>& list) {
+            list.push_back(static_cast<std::uint32_t>(i));
+        });
+    }
+}
+
+/// Whether a new ball would only lie inside one of those in the cubes.
+inline bool cumulus_buried(cumulus_cells& cells, const std::vector<cumulus_ball>& balls,
+                           glm::dvec3 centre, double radius) {
+    bool buried = false;
+    cells.around(centre, 0, [&](const std::vector<std::uint32_t>& list) {
+        for (const std::uint32_t i : list) {
+            const double room = balls[i].radius - 0.35 * radius;
+            const glm::dvec3 d = balls[i].centre - centre;
+            buried = buried || (room > 0 && glm::dot(d, d) < room * room);
+        }
+    });
+    return buried;
 }
 
 /// The whole pile: balls on balls down to `smallest`, then the shreds around the foot.
@@ -210,16 +246,19 @@ inline std::vector<cumulus_ball> cumulus_pile(cumulus_random& random, double hal
                                               double smallest) {
     std::vector<cumulus_ball> balls = cumulus_towers(random, half, thickness);
     constexpr std::array<int, 4> on_each{14, 14, 12, 10};
+    const cumulus_bounds box = cumulus_around(balls);
+    cumulus_cells cells(box.low, box.high, 0.15 * std::min(half, thickness));
     std::size_t first = 0;
     for (const int puffs : on_each) {
         const std::size_t last = balls.size();
+        cumulus_enter(cells, balls, first);
         for (std::size_t parent = first; parent < last; ++parent) {
             for (int i = 0; i < puffs; ++i) {
                 const double radius = balls[parent].radius * random.between(0.26, 0.5);
                 const glm::dvec3 centre =
                     balls[parent].centre + random.direction(-0.25) * (0.93 * balls[parent].radius);
                 if (radius >= smallest && centre.y + radius <= thickness &&
-                    !cumulus_buried(balls.data(), last, centre, radius)) {
+                    !cumulus_buried(cells, balls, centre, radius)) {
                     balls.push_back({centre, radius, 1});
                 }
             }
@@ -255,20 +294,12 @@ struct cumulus_places {
 };
 
 inline cumulus_places cumulus_inside(cumulus_random& random, const std::vector<cumulus_ball>& balls,
-                                     double thickness, std::size_t wanted) {
-    glm::dvec3 low(0);
-    glm::dvec3 high(0, thickness, 0);
-    for (const cumulus_ball& b : balls) {
-        low = glm::min(low, b.centre - b.radius);
-        high = glm::max(high, b.centre + b.radius);
-    }
+                                     double half, double thickness, std::size_t wanted) {
+    auto [low, high] = cumulus_around(balls);
     low.y = 0;
     high.y = thickness;
-    cumulus_cells cells(low, high, thickness / 24);
-    for (std::uint32_t i = 0; i < balls.size(); ++i) {
-        cells.around(balls[i].centre, balls[i].radius,
-                     [&](std::vector<std::uint32_t>& list) { list.push_back(i); });
-    }
+    cumulus_cells cells(low, high, std::min(thickness, 2 * half) / 24);
+    cumulus_enter(cells, balls, 0);
     cumulus_places places;
     std::size_t tries = 0;
     const glm::dvec3 size = high - low;
@@ -373,41 +404,45 @@ inline std::vector<std::uint32_t> cumulus_choice(cumulus_random& random,
     return chosen;
 }
 
-[[nodiscard]] inline bool cumulus_size(float x) { return std::isfinite(x) && x > 0; }
+/// Whether a cloud of this shape can be made: beyond it, floats run out or piles take hours.
+[[nodiscard]] inline bool cumulus_shape(float width, float thickness) {
+    const auto is_size = [](float x) { return x >= 1e-3f && x <= 1e6f; };
+    return is_size(width) && is_size(thickness) && thickness <= 50 * width &&
+           width <= 50 * thickness;
+}
+[[nodiscard]] inline bool cumulus_matter(float extinction, float albedo) {
+    return extinction > 0 && extinction <= 1e6f && std::isfinite(albedo);
+}
 [[nodiscard]] inline bool cumulus_place_in_world(glm::vec3 p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-} // namespace detail
-
-/// A cumulus cloud of `options.particles` particles, all of them centred above the base.
-[[nodiscard]] inline std::vector<cloud_particle> cumulus_cloud(const cumulus_options& options) {
+/// A cloud of options that make sense.
+[[nodiscard]] inline std::vector<cloud_particle> cumulus_filled(const cumulus_options& options) {
     std::vector<cloud_particle> particles;
-    if (options.particles == 0 || !detail::cumulus_size(options.width) ||
-        !detail::cumulus_size(options.thickness) || !detail::cumulus_size(options.extinction) ||
-        !detail::cumulus_place_in_world(options.base)) {
-        return particles;
-    }
-    detail::cumulus_random random(options.seed);
+    cumulus_random random(options.seed);
     const double half = 0.5 * double{options.width};
     const double thickness = double{options.thickness};
     const double smallest = 3 * half / std::sqrt(static_cast<double>(options.particles));
-    const auto pile = detail::cumulus_pile(random, half, thickness, smallest);
-    const auto places = detail::cumulus_inside(
-        random, pile, thickness, std::max<std::size_t>(20000, std::size_t{6} * options.particles));
-    const double finest =
-        detail::cumulus_finest(places, options.particles, std::max(half, thickness));
-    const auto chosen = detail::cumulus_choice(random, places, finest, options.particles);
+    const auto pile = cumulus_pile(random, half, thickness, smallest);
+    const auto places =
+        cumulus_inside(random, pile, half, thickness,
+                       std::max<std::size_t>(20000, std::size_t{6} * options.particles));
+    if (places.all.empty()) {
+        return particles;
+    }
+    const double finest = cumulus_finest(places, options.particles, std::max(half, thickness));
+    const auto chosen = cumulus_choice(random, places, finest, options.particles);
 
     double cubes = 0;
     for (const std::uint32_t i : chosen) {
-        const double radius = detail::cumulus_radius(finest, places.all[i].depth);
+        const double radius = cumulus_radius(finest, places.all[i].depth);
         cubes += radius * radius * radius;
     }
     particles.reserve(chosen.size());
     for (const std::uint32_t i : chosen) {
-        const detail::cumulus_place& place = places.all[i];
-        const double radius = detail::cumulus_radius(finest, place.depth);
+        const cumulus_place& place = places.all[i];
+        const double radius = cumulus_radius(finest, place.depth);
         // Water in m²: extinction times its share of the volume. A Gaussian of depth t through its
         // centre holds t · 2π sigma², sigma = radius / 3.
         const double water = double{options.extinction} * places.volume * place.density *
@@ -423,15 +458,30 @@ inline std::vector<std::uint32_t> cumulus_choice(cumulus_random& random,
     return particles;
 }
 
+} // namespace detail
+
+/// A cumulus cloud of `options.particles` particles, all of them centred above the base.
+[[nodiscard]] inline std::vector<cloud_particle> cumulus_cloud(const cumulus_options& options) {
+    if (options.particles == 0 || options.particles > most_cumulus_particles ||
+        !detail::cumulus_shape(options.width, options.thickness) ||
+        !detail::cumulus_matter(options.extinction, options.albedo) ||
+        !detail::cumulus_place_in_world(options.base)) {
+        return {};
+    }
+    return detail::cumulus_filled(options);
+}
+
 /// A sky of cumulus clouds: `options.clouds` of them, `clouds · particles_per_cloud` particles,
 /// cloud after cloud. Many are small and few are large: the number of clouds wider than w falls
 /// like 1/w, from the widest to a quarter of it.
 [[nodiscard]] inline std::vector<cloud_particle>
 cumulus_field(const cumulus_field_options& options) {
     std::vector<cloud_particle> particles;
-    if (options.clouds == 0 || options.particles_per_cloud == 0 ||
-        !detail::cumulus_size(options.extent) || !detail::cumulus_size(options.width) ||
-        !detail::cumulus_size(options.thickness) ||
+    const std::uint64_t all = std::uint64_t{options.clouds} * options.particles_per_cloud;
+    if (all == 0 || all > most_cumulus_particles || options.clouds > most_cumulus_clouds ||
+        !std::isfinite(options.extent) || !(options.extent > 0) ||
+        !detail::cumulus_shape(options.width, options.thickness) ||
+        !detail::cumulus_matter(options.extinction, options.albedo) ||
         !detail::cumulus_place_in_world(options.centre)) {
         return particles;
     }
@@ -443,7 +493,6 @@ cumulus_field(const cumulus_field_options& options) {
         sizes[i] = i == 0 ? 1 : 1 / (1 + 3 * rank);
         area += sizes[i] * sizes[i];
     }
-    const std::uint64_t all = std::uint64_t{options.clouds} * options.particles_per_cloud;
     particles.reserve(all);
     std::vector<glm::dvec3> taken; // x, z, half the width
     double before = 0;
@@ -481,7 +530,10 @@ cumulus_field(const cumulus_field_options& options) {
         one.particles = static_cast<std::uint32_t>(last - first);
         one.extinction = options.extinction;
         one.albedo = options.albedo;
-        const auto cloud = cumulus_cloud(one);
+        if (one.particles == 0) {
+            continue;
+        }
+        const auto cloud = detail::cumulus_filled(one);
         for (const cloud_particle& particle : cloud) {
             particles.push_back(particle);
         }

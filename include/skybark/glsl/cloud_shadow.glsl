@@ -1,5 +1,5 @@
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 fb44aad1536b877bc4b5a2031c50bb4aa2c581b200d229ed206afe4a6a6ce700
+// sha256 5a1f19912e788e80b6a4a26ff1bfffb5919bdd19571e94e5300b045237800d10
 
 // The shadow of clouds on whatever asks, for a shader of your own: what
 // skybark::clouds::attenuation_volume made is one sampler3D (linear filter, edges clamped), its
@@ -20,10 +20,10 @@ struct light_grid {
 
 #ifndef SKYBARK_EXP_MINUS
 #define SKYBARK_EXP_MINUS
-// e^-x for 0 <= x < 87, to 2e-7 of itself; 0 beyond. Cody and Waite's reduction, then a series.
+// e^-x for 0 <= x < 87, to 2e-7 of itself; 0 beyond, and for what is no number. Cody and Waite's reduction, then a series.
 float exp_minus(float x)
 {
-    float within = min(x, 87.0f);
+    float within = x < 87.0f ? x : 87.0f;
     float halvings = floor(within * 1.44269504f + 0.5f);
     float r = halvings * 0.693145752f - within;
     r = r + halvings * 1.42860677e-6f;

@@ -44,8 +44,9 @@ struct particle_shade {
                                 std::int32_t z) const {
         const float dx = (static_cast<float>(x) + 0.5f - at.centre.x) * grid.voxel.x;
         const float dz = (static_cast<float>(z) + 0.5f - at.centre.z) * grid.voxel.z;
-        return shared::particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) /
-               grid.voxel.w;
+        const float amount =
+            shared::particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+        return shared::summable(amount / grid.voxel.w);
     }
     /// What part of a particle lies above the middle of row y.
     [[nodiscard]] float part_above(const placed& p, std::int32_t y) const {

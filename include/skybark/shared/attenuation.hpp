@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 30435aa08a629d2a7c77355dc9ddd5a77ee3b26139800137d1a26feb550d542a
+// sha256 de8c5c3532bf0b84a59e2ac20e66dbd1940a97324277367ed61be2af7cd1d68b
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -12,10 +12,10 @@ namespace skybark::shared {
 // Exponentials are made of + and × alone, so that a quantum that rounds up on one backend rounds up
 // on all of them.
 
-// e^−x for 0 <= x < 87, to 2e-7 of itself; 0 beyond. Cody and Waite's reduction, then a series.
+// e^−x for 0 <= x < 87, to 2e-7 of itself; 0 beyond, and for what is no number. Cody and Waite's reduction, then a series.
 inline float exp_minus(float x)
 {
-    float within = min(x, 87.0f);
+    float within = x < 87.0f ? x : 87.0f;
     float halvings = floor(within * 1.44269504f + 0.5f);
     float r = halvings * 0.693145752f - within;
     r = r + halvings * 1.42860677e-6f;
@@ -66,8 +66,8 @@ inline float log_of_sum(float sum, float less_one)
     return 2.0f * s * p + twos * 0.693147181f;
 }
 
-// ½ erfc(u / √2): what of a Gaussian of unit width lies above u. To 1e-7 (Abramowitz and Stegun,
-// Handbook of Mathematical Functions, 7.1.26).
+// ½ erfc(u / √2): what of a Gaussian of unit width lies above u. To 3e-7, 1e-7 of it the formula's
+// (Abramowitz and Stegun, Handbook of Mathematical Functions, 7.1.26), the rest rounding.
 inline float gaussian_above(float u)
 {
     float x = abs(u) * 0.707106781f;
@@ -103,6 +103,12 @@ inline vec3 place_of(light_grid grid, vec3 cells)
         grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 
+// A number of a particle that nobody has checked: 0 for what is below it or no number.
+inline float bounded(float x, float largest)
+{
+    return x > 0.0f ? min(x, largest) : 0.0f;
+}
+
 // What light a particle takes out along a line that passes its centre at the squared distance d2
 // (m²): −ln G. `light` is 0 for extinction alone, 1 for the continuum limit, 2 for the paper's
 // product (eq. 7); `forward` is the part of the energy that goes on forward, or P(0).
@@ -112,12 +118,20 @@ inline float particle_attenuation(cloud_particle p, float d2, float sigmas, uint
     if (d2 >= r2) {
         return 0.0f;
     }
-    float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-    float on = p.albedo * forward * tau;
+    float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+    float albedo = bounded(p.albedo, 1.0f);
+    float on = albedo * forward * tau;
     if (light == 2u && on > 0.0f) {
         return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
     }
-    return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+    return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+
+// Quanta on a line that an int32 holds. Of a particle too deep for the quantum so many are left that
+// it is dark behind it, and that 31 of them can be added up.
+inline float summable(float amount)
+{
+    return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 
 // The highest row of voxels whose centres lie below a particle's top, and the highest whose
@@ -144,7 +158,7 @@ inline float part_above(uint profile, int row, float y, float radius, float sigm
     return gaussian_above((float(row) + 0.5f - y) / radius * sigmas);
 }
 
-// A contribution as a whole number of quanta.
+// A contribution as a whole number of quanta: what is `summable`, or a part of it.
 inline int quanta(float amount)
 {
     return int(floor(amount + 0.5f));

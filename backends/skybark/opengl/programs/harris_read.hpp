@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 53fa6b3d8b141aa40ddbc500014cfc407ee3d358a78c2f491f3d3c103076897f
+// sha256 6d29592b1e6ad1a076da97652ad95fb03a9940b600971424cf544fef6fbb16cd
 #pragma once
 
 #include <skybark/kernels/harris_read.hpp>
@@ -165,7 +165,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -240,18 +240,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -297,7 +306,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 7477};
+)glsl", 7732};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -455,7 +464,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -530,18 +539,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -586,7 +604,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 7492};
+)glsl", 7747};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 bcd046eafdc40030c742e72517cdb8ad20d2b1013dfcb955c34deb729ed2ac35
+// sha256 deaedd9c9b1df546679a1718c6779efad7c8873d704c6e23f7c934fa9b12532d
 #pragma once
 
 #include <skybark/kernels/lit_puff.hpp>
@@ -283,7 +283,7 @@ return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
 }
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -358,18 +358,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -712,7 +721,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 22271};
+)glsl", 22526};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -986,7 +995,7 @@ return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
 }
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -1061,18 +1070,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -1419,7 +1437,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 22284};
+)glsl", 22539};
 };
 
 } // namespace skybark::opengl

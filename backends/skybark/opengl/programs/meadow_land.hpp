@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 54e824ff1b2999f3d5b0722a7a5b943312d981416248659c916b694772844208
+// sha256 12adffe10618695b518692b8584f9a889f97463db90166c3ea855cf25be3d389
 #pragma once
 
 #include <skybark/kernels/meadow_land.hpp>
@@ -284,7 +284,7 @@ return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
 }
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -359,18 +359,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -563,7 +572,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 17705};
+)glsl", 17960};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -838,7 +847,7 @@ return srgb_encode(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f));
 }
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -913,18 +922,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -1121,7 +1139,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 17718};
+)glsl", 17973};
 };
 
 } // namespace skybark::opengl

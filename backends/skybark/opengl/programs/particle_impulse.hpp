@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ad771ca6705e5646a09bddd0400dbcf1d830153b438138928185d406bf833c06
+// sha256 cbde219991037015ec4e56cf24084f9b5e352369d28cddbf4a8ef366c347baf6
 #pragma once
 
 #include <skybark/kernels/particle_impulse.hpp>
@@ -169,7 +169,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -244,18 +244,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -302,7 +311,8 @@ return count > 0 ? min(uint(count), slices) : 0u;
 float lateral_of(cloud_particle p, placed at, int x, int z) {
 float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
+float amount = particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+return summable(amount / grid.voxel.w);
 }
 float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
@@ -382,7 +392,7 @@ for (uint s = first + slot; s < last; s += gl_WorkGroupSize.x / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 10722};
+)glsl", 11010};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -536,7 +546,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -611,18 +621,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -669,7 +688,8 @@ return count > 0 ? min(uint(count), slices) : 0u;
 float lateral_of(cloud_particle p, placed at, int x, int z) {
 float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
+float amount = particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+return summable(amount / grid.voxel.w);
 }
 float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
@@ -738,7 +758,7 @@ slab = skybark_visible(i, s);
 skybark_cell = ivec2(i, slab.slice);
 gl_Position = skybark_corner(slab, corners[uint(gl_VertexID) - rectangle * 6u]);
 }
-)glsl", 10192};
+)glsl", 10480};
     static constexpr std::string_view slabs_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -892,7 +912,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -967,18 +987,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -1025,7 +1054,8 @@ return count > 0 ? min(uint(count), slices) : 0u;
 float lateral_of(cloud_particle p, placed at, int x, int z) {
 float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
+float amount = particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+return summable(amount / grid.voxel.w);
 }
 float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
@@ -1110,7 +1140,7 @@ skybark_emit(i, slab);
 }
 }
 }
-)glsl", 10684};
+)glsl", 10972};
     static constexpr std::string_view slabs_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1264,7 +1294,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -1339,18 +1369,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -1397,7 +1436,8 @@ return count > 0 ? min(uint(count), slices) : 0u;
 float lateral_of(cloud_particle p, placed at, int x, int z) {
 float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
+float amount = particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+return summable(amount / grid.voxel.w);
 }
 float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
@@ -1459,7 +1499,7 @@ int low = amount & 255;
 int carry = low >> 7;
 skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));
 }
-)glsl", 10036};
+)glsl", 10324};
 };
 
 } // namespace skybark::opengl

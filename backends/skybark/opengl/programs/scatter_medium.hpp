@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 38134e5332be7a7e74fd9c191dc7949d6fb3ba532d926672adf6119703b88fbc
+// sha256 1da41784a72913429c6c8dea254c465eb3a60adeca24f16b4b581ad26fc22192
 #pragma once
 
 #include <skybark/kernels/scatter_medium.hpp>
@@ -167,7 +167,7 @@ uint reserved;
 };
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -242,18 +242,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -318,7 +327,7 @@ if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
 kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
 }
-)glsl", 8115};
+)glsl", 8370};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 4f0ab550c66685a92826e8b764fe1e4775ff918491d013c3eb21e8e59ca81239
+// sha256 86b93f5b22d542b8d52000ea7136b782efcdf0815bc7091115f650f3235f4b6b
 #pragma once
 
 #include <skybark/kernels/shadow_polygon.hpp>
@@ -169,7 +169,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -244,18 +244,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -302,7 +311,8 @@ return count > 0 ? min(uint(count), slices) : 0u;
 float lateral_of(cloud_particle p, placed at, int x, int z) {
 float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
+float amount = particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+return summable(amount / grid.voxel.w);
 }
 float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 layout(std430, binding = 1) readonly buffer corners_buffer { vec4 corners[]; };
@@ -378,7 +388,7 @@ for (uint s = first + slot; s < last; s += gl_WorkGroupSize.x / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 10563};
+)glsl", 10851};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -532,7 +542,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -607,18 +617,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -665,7 +684,8 @@ return count > 0 ? min(uint(count), slices) : 0u;
 float lateral_of(cloud_particle p, placed at, int x, int z) {
 float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
+float amount = particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+return summable(amount / grid.voxel.w);
 }
 float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 layout(std430, binding = 1) readonly buffer corners_buffer { vec4 corners[]; };
@@ -730,7 +750,7 @@ slab = skybark_visible(i, s);
 skybark_cell = ivec2(i, slab.slice);
 gl_Position = skybark_corner(slab, corners[uint(gl_VertexID) - rectangle * 6u]);
 }
-)glsl", 10033};
+)glsl", 10321};
     static constexpr std::string_view slabs_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -884,7 +904,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -959,18 +979,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -1017,7 +1046,8 @@ return count > 0 ? min(uint(count), slices) : 0u;
 float lateral_of(cloud_particle p, placed at, int x, int z) {
 float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
+float amount = particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+return summable(amount / grid.voxel.w);
 }
 float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 layout(std430, binding = 1) readonly buffer corners_buffer { vec4 corners[]; };
@@ -1098,7 +1128,7 @@ skybark_emit(i, slab);
 }
 }
 }
-)glsl", 10525};
+)glsl", 10813};
     static constexpr std::string_view slabs_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1252,7 +1282,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -1327,18 +1357,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -1385,7 +1424,8 @@ return count > 0 ? min(uint(count), slices) : 0u;
 float lateral_of(cloud_particle p, placed at, int x, int z) {
 float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
+float amount = particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+return summable(amount / grid.voxel.w);
 }
 float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 layout(std430, binding = 1) readonly buffer corners_buffer { vec4 corners[]; };
@@ -1443,7 +1483,7 @@ int low = amount & 255;
 int carry = low >> 7;
 skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));
 }
-)glsl", 9877};
+)glsl", 10165};
 };
 
 } // namespace skybark::opengl

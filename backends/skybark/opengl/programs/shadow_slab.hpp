@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 27b391d4d3163b3ddfaa6a008d92da1397d7f875ce9d3b35f7c2261b4fe40f03
+// sha256 73d853ae2be89ff3031de2f77562da0801d96973324e85e782f6571ad7ca1956
 #pragma once
 
 #include <skybark/kernels/shadow_slab.hpp>
@@ -170,7 +170,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -245,18 +245,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -303,7 +312,8 @@ return count > 0 ? min(uint(count), slices) : 0u;
 float lateral_of(cloud_particle p, placed at, int x, int z) {
 float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
+float amount = particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+return summable(amount / grid.voxel.w);
 }
 float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
@@ -385,7 +395,7 @@ for (; strip < last; ++strip) {
 skybark_run(skybark_header.x + element, strip, first, count);
 }
 }
-)glsl", 10534};
+)glsl", 10822};
     static constexpr std::string_view accumulate_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
@@ -546,7 +556,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -621,18 +631,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -679,7 +698,8 @@ return count > 0 ? min(uint(count), slices) : 0u;
 float lateral_of(cloud_particle p, placed at, int x, int z) {
 float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
+float amount = particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+return summable(amount / grid.voxel.w);
 }
 float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
@@ -767,7 +787,7 @@ for (uint s = first + slot; s < last; s += gl_WorkGroupSize.x / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 11025};
+)glsl", 11313};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -922,7 +942,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -997,18 +1017,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -1055,7 +1084,8 @@ return count > 0 ? min(uint(count), slices) : 0u;
 float lateral_of(cloud_particle p, placed at, int x, int z) {
 float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
+float amount = particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+return summable(amount / grid.voxel.w);
 }
 float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
@@ -1132,7 +1162,7 @@ slab = skybark_visible(i, s);
 skybark_cell = ivec2(i, slab.slice);
 gl_Position = skybark_corner(slab, corners[uint(gl_VertexID) - rectangle * 6u]);
 }
-)glsl", 10495};
+)glsl", 10783};
     static constexpr std::string_view slabs_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1287,7 +1317,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -1362,18 +1392,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -1420,7 +1459,8 @@ return count > 0 ? min(uint(count), slices) : 0u;
 float lateral_of(cloud_particle p, placed at, int x, int z) {
 float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
+float amount = particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+return summable(amount / grid.voxel.w);
 }
 float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
@@ -1513,7 +1553,7 @@ skybark_emit(i, slab);
 }
 }
 }
-)glsl", 10987};
+)glsl", 11275};
     static constexpr std::string_view slabs_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1668,7 +1708,7 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float exp_minus(float x)
 {
-float within = min(x, 87.0f);
+float within = x < 87.0f ? x : 87.0f;
 float halvings = floor(within * 1.44269504f + 0.5f);
 float r = halvings * 0.693145752f - within;
 r = r + halvings * 1.42860677e-6f;
@@ -1743,18 +1783,27 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float bounded(float x, float largest)
+{
+return x > 0.0f ? min(x, largest) : 0.0f;
+}
 float particle_attenuation(cloud_particle p, float d2, float sigmas, uint light, float forward)
 {
 float r2 = p.radius * p.radius;
 if (d2 >= r2) {
 return 0.0f;
 }
-float tau = p.optical_depth * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
-float on = p.albedo * forward * tau;
+float tau = bounded(p.optical_depth, 1e6f) * exp_minus(0.5f * sigmas * sigmas * d2 / r2);
+float albedo = bounded(p.albedo, 1.0f);
+float on = albedo * forward * tau;
 if (light == 2u && on > 0.0f) {
 return -log_of_sum(exp_minus(tau) + on, on - one_minus_exp(tau));
 }
-return light == 1u ? tau * (1.0f - p.albedo * forward) : tau;
+return light == 1u ? tau * (1.0f - albedo * forward) : tau;
+}
+float summable(float amount)
+{
+return amount < 2147483520.0f ? amount : (amount > 0.0f ? 67108864.0f : 0.0f);
 }
 int top_row(float y, float radius)
 {
@@ -1801,7 +1850,8 @@ return count > 0 ? min(uint(count), slices) : 0u;
 float lateral_of(cloud_particle p, placed at, int x, int z) {
 float dx = (float(x) + 0.5 - at.centre.x) * grid.voxel.x;
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-return particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward) / grid.voxel.w;
+float amount = particle_attenuation(p, dx * dx + dz * dz, sigmas, light, forward);
+return summable(amount / grid.voxel.w);
 }
 float part_of(placed p, int y) { return part_above(profile, y, p.centre.y, p.radius.y, sigmas); }
 uint kernel_slabs() { return slices; }
@@ -1871,7 +1921,7 @@ int low = amount & 255;
 int carry = low >> 7;
 skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));
 }
-)glsl", 10339};
+)glsl", 10627};
 };
 
 } // namespace skybark::opengl

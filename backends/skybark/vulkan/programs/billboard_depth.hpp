@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 2271335bfcdb75c09c3c31d61ba2f8f6a3619a7a26e9dfa731ebaff789410b67
+// sha256 70659213335cb35f24a1f1f13a98e10b9ad2d7b56a78c3cac1f943f708ee0c51
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b1569784875d31fba5cd00520cd5013722f5ab695e1007422b30e1db1235a5ce
+// sha256 5656a04ed516ee6be24ac68f3c1c498ba3267472f46d9f4c1d6589f95dee4959
 #pragma once
 
 #include <skybark/kernels/grid_impulse.hpp>

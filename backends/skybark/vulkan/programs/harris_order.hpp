@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 9f688cd522c39392b775e173cd890f9926a3fa03c7ff6dc7ccf11e5adfe0929c
+// sha256 89e207a86d7ce38cdbadad0f0816d64a3b2e3a1ddeb4513da2c43eb9906e932c
 #pragma once
 
 #include <skybark/kernels/harris_order.hpp>

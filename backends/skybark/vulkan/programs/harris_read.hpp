@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5025c8dbd29857bec95a128ca2db917cc22926352d1b59c6d490dfad605d0561
+// sha256 6bd5ba29cf2363df0c95390df7f0964eded2d87b9eb5f03b2b92e43db652a88b
 #pragma once
 
 #include <skybark/kernels/harris_read.hpp>
