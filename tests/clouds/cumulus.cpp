@@ -3,6 +3,7 @@
 #include <skybark/clouds/cumulus.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>
@@ -239,6 +240,7 @@ TEST(cumulus, senseless_sizes_make_no_cloud) {
         EXPECT_TRUE(none([&](auto& o) { o.width = wrong; }));
         EXPECT_TRUE(none([&](auto& o) { o.thickness = wrong; }));
         EXPECT_TRUE(none([&](auto& o) { o.extinction = wrong; }));
+        EXPECT_EQ(none([&](auto& o) { o.albedo = wrong; }), !std::isfinite(wrong));
     }
     EXPECT_TRUE(none([&](auto& o) { o.base.x = nan; }));
     cumulus_field_options field;
@@ -249,9 +251,65 @@ TEST(cumulus, senseless_sizes_make_no_cloud) {
     EXPECT_TRUE(cumulus_field(field).empty());
 }
 
+/// Shapes whose pile would be endless, or that floats do not resolve: none, and at once.
+TEST(cumulus, shapes_beyond_the_limits_make_no_cloud) {
+    const auto start = std::chrono::steady_clock::now();
+    for (const auto& [width, thickness] :
+         {std::pair{1e5f, 1.0f}, std::pair{1000.0f, 1e-3f}, std::pair{1e-42f, 1.0f},
+          std::pair{1.0f, 1e9f}, std::pair{1e30f, 1e-30f}, std::pair{1e-3f, 1000.0f},
+          std::pair{1.0f, 1e5f}, std::pair{1e30f, 1e30f}, std::pair{1e-30f, 1e-30f},
+          std::pair{1.0f, 50.1f}, std::pair{50.1f, 1.0f}, std::pair{9e-4f, 9e-4f},
+          std::pair{1.1e6f, 1e6f}, std::pair{1e6f, 1.1e6f}}) {
+        cumulus_options options;
+        options.width = width;
+        options.thickness = thickness;
+        options.particles = 10;
+        EXPECT_TRUE(cumulus_cloud(options).empty()) << width << " x " << thickness;
+        cumulus_field_options field;
+        field.clouds = 2;
+        field.particles_per_cloud = 10;
+        field.width = width;
+        field.thickness = thickness;
+        EXPECT_TRUE(cumulus_field(field).empty()) << width << " x " << thickness;
+    }
+    cumulus_options dense;
+    dense.extinction = 1e30f;
+    EXPECT_TRUE(cumulus_cloud(dense).empty());
+    cumulus_options many;
+    many.particles = most_cumulus_particles + 1;
+    EXPECT_TRUE(cumulus_cloud(many).empty());
+    cumulus_field_options field;
+    field.clouds = 0xffffffffu;
+    field.particles_per_cloud = 0xffffffffu;
+    EXPECT_TRUE(cumulus_field(field).empty());
+    field.clouds = 2;
+    field.particles_per_cloud = most_cumulus_particles / 2 + 1;
+    EXPECT_TRUE(cumulus_field(field).empty());
+    field.clouds = most_cumulus_clouds + 1;
+    field.particles_per_cloud = 1;
+    EXPECT_TRUE(cumulus_field(field).empty());
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+}
+
+/// At the limits of one cloud, the smaller ones of a field have other shapes.
+TEST(cumulus, a_field_of_odd_shapes_has_all_its_particles) {
+    for (const auto& [width, thickness] :
+         {std::pair{2e-3f, 1e-3f}, std::pair{1e6f, 5e5f}, std::pair{100.0f, 5000.0f}}) {
+        cumulus_field_options options;
+        options.clouds = 2;
+        options.particles_per_cloud = 20;
+        options.extent = 4 * width;
+        options.width = width;
+        options.thickness = thickness;
+        EXPECT_EQ(cumulus_field(options).size(), 40u) << width << " x " << thickness;
+    }
+}
+
 TEST(cumulus, odd_shapes_are_clouds_as_well) {
     for (const auto& [width, thickness] :
-         {std::pair{2000.0f, 60.0f}, std::pair{100.0f, 4000.0f}, std::pair{1.0f, 1.0f}}) {
+         {std::pair{2000.0f, 60.0f}, std::pair{100.0f, 4000.0f}, std::pair{1.0f, 1.0f},
+          std::pair{2000.0f, 40.0f}, std::pair{100.0f, 5000.0f}, std::pair{1e-3f, 1e-3f},
+          std::pair{1e6f, 1e6f}}) {
         cumulus_options options;
         options.width = width;
         options.thickness = thickness;
