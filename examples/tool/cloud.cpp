@@ -13,7 +13,9 @@
 #include <skybark/clouds/cumulus.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 
 namespace skybark::tool {
@@ -44,11 +46,12 @@ result<void> check_words(const cloud_words& words, cloud_job& job) {
         return fail(error_code::bad_input, "There is no -o OUT; expected a name that ends in "
                                            ".png, .vdb or, with --probe, .csv.");
     }
-    const auto options = check(words.more, {words.input, words.out});
+    const auto options = check(words.more, {words.input, words.out, words.common.size.has_value(),
+                                            words.common.seed.has_value()});
     if (!options) {
         return failure(options.error());
     }
-    if (auto good = check_apart({words.input, words.out, words.common.stats, options->probe},
+    if (auto good = check_apart({words.input, words.out, common->stats, options->probe},
                                 "INPUT, -o, --probe and --stats");
         !good) {
         return good;
@@ -72,6 +75,7 @@ nlohmann::ordered_json stats_of(const cloud_job& job) {
     auto stats = begin_report("cloud", job);
     const glm::uvec3 voxels = job.box.voxels;
     stats["counts"] = {{"particles", job.particles.size()},
+                       {"thin_particles", job.thin.count},
                        {"densities", job.grid.density.size()},
                        {"voxels", std::uint64_t{voxels.x} * voxels.y * voxels.z},
                        {"points", job.points.size()}};
@@ -83,16 +87,81 @@ void summarise(const cloud_job& job) {
     if (job.common.quiet) {
         return;
     }
-    const bool is_grid = job.is_grid();
-    std::printf("%s: %zu %s, %u x %u x %u voxels, %.2f s on %s (%s)\n", job.out.c_str(),
-                is_grid ? job.grid.density.size() : job.particles.size(),
-                is_grid ? "densities" : "particles", job.box.voxels.x, job.box.voxels.y,
-                job.box.voxels.z, job.time.total(), name_of(job.common.backend),
-                job.device.c_str());
+    const std::size_t count = job.is_grid() ? job.grid.density.size() : job.particles.size();
+    const char* what = job.is_grid() ? (count == 1 ? "density" : "densities")
+                                     : (count == 1 ? "particle" : "particles");
+    std::printf("%s: %zu %s, %u x %u x %u voxels, %.2f s on %s (%s)\n", job.out.c_str(), count,
+                what, job.box.voxels.x, job.box.voxels.y, job.box.voxels.z, job.time.total(),
+                name_of(job.common.backend), job.device.c_str());
+}
+
+/// The wider side of the volume's voxels across the light.
+double width_of_voxel(const light_grid& grid) {
+    return std::max(double{grid.voxel.x}, double{grid.voxel.z});
+}
+
+/// Particles of a smaller radius than a voxel, by their water: optical depth times area.
+thin_particles thin_of(std::span<const cloud_particle> particles, const clouds::light_box& box) {
+    const auto water = [](const cloud_particle& p) {
+        return double{p.optical_depth} * double{p.radius} * double{p.radius};
+    };
+    const double width = width_of_voxel(box.grid);
+    double all = 0;
+    double missed = 0;
+    std::vector<std::pair<double, double>> thin; // radius, water
+    for (const cloud_particle& p : particles) {
+        all += water(p);
+        if (double{p.radius} < width) {
+            thin.emplace_back(p.radius, water(p));
+            missed += water(p);
+        }
+    }
+    thin_particles found;
+    found.count = thin.size();
+    if (thin.empty() || !(all > 0)) {
+        return found;
+    }
+    found.share = missed / all;
+    // As many voxels as leave a hundredth of the water to particles of a smaller radius.
+    std::sort(thin.begin(), thin.end());
+    double below = 0;
+    std::size_t i = 0;
+    while (i + 1 < thin.size() && below + thin[i].second <= 0.01 * all) {
+        below += thin[i++].second;
+    }
+    const double side = std::max({box.voxels.x, box.voxels.y, box.voxels.z});
+    found.enough_voxels = std::ceil(side * width / thin[i].first);
+    return found;
+}
+
+/// A note of particles that the volume may miss, where they are more than a hundredth of the cloud.
+void note_thin(const cloud_job& job) {
+    constexpr double little = 0.01;
+    if (job.common.quiet || job.thin.share <= little) {
+        return;
+    }
+    constexpr double most_voxels = 65536; // of --volume
+    char text[320];
+    std::snprintf(text, sizeof text,
+                  "Note: %zu of %zu particles, with %.2g %% of the cloud's water, have a radius "
+                  "below a voxel's side of %.3g m, and may fall between the middles of voxels and "
+                  "cast no shadow; expected ",
+                  job.thin.count, job.particles.size(), 100 * job.thin.share,
+                  width_of_voxel(job.box.grid));
+    std::string sentence = text;
+    if (job.thin.enough_voxels <= most_voxels) {
+        std::snprintf(text, sizeof text, "--volume %.0f or ", job.thin.enough_voxels);
+        sentence += text;
+    }
+    complain(sentence + "wider particles.");
 }
 
 int run_cloud(const cloud_words& words) {
     if (words.list) {
+        if (!words.input.empty() || !words.out.empty()) {
+            return usage_error("cloud", "--list names the built-in clouds and does nothing else; "
+                                        "expected neither INPUT nor -o with it.");
+        }
         return list_clouds();
     }
     cloud_job job(words.common.quiet);
@@ -108,17 +177,19 @@ int run_cloud(const cloud_words& words) {
     }
     job.time.end(); // takes the bar away before a sentence comes
     if (done) {
+        job.thin = thin_of(job.particles, job.box);
         done = write_report(job, stats_of(job));
     }
     if (!done) {
         return report_failure(done.error());
     }
+    note_thin(job);
     summarise(job);
     return exit_done;
 }
 
 result<void> read_grid(cloud_job& job) {
-    auto grid = io::read_vdb(job.input);
+    auto grid = io::read_vdb(job.input, job.options.grid);
     if (!grid) {
         return failure(grid.error());
     }
@@ -135,9 +206,9 @@ result<std::vector<cloud_particle>> particles_of(const cloud_job& job) {
     if (job.options.source == cloud_source::cumuli) {
         clouds::cumulus_field_options field;
         field.seed = job.common.seed;
-        field.clouds = 24;
+        field.clouds = clouds_of_field;
         field.extent = 9000;
-        field.particles_per_cloud = std::max(1u, job.options.particles / field.clouds);
+        field.particles_per_cloud = job.options.particles / field.clouds;
         return clouds::cumulus_field(field);
     }
     clouds::cumulus_options one;
@@ -195,6 +266,46 @@ glm::dmat4 world_of(const light_grid& grid) {
     return to_world;
 }
 
+/// What a volume's grid says of itself.
+std::vector<io::vdb_note> notes_of(const cloud_options& options, const finished_volume& volume) {
+    std::vector<io::vdb_note> notes{{"creator", "Skybark " SKYBARK_VERSION},
+                                    {"units", "1"},
+                                    {"to_sun", glm::normalize(glm::vec3(volume.grid.row_y))},
+                                    {"sun_azimuth", static_cast<float>(options.sun_azimuth)},
+                                    {"sun_elevation", static_cast<float>(options.sun_elevation)}};
+    const auto add = [&](const char* key, std::string_view text) {
+        notes.emplace_back(key, std::string(text));
+    };
+    if (options.source != cloud_source::grid) {
+        add("method", name_of(options.method));
+        add("profile", name_of(options.attenuation.profile));
+        notes.emplace_back("sigmas", options.attenuation.sigmas);
+    }
+    if (volume.name == "diffuse_fluence") {
+        add("description", "Fluence of the sun's light that was scattered more than once, over the "
+                           "sun's irradiance outside of the cloud, at the middles of voxels.");
+        add("outside", "Not known here: it fades with the distance from the box.");
+        add("light", name_of(options.light));
+        return notes;
+    }
+    add("outside", "Above the box, towards the sun, and beside it: 0. Below it the undermost layer "
+                   "(y = 0) goes on.");
+    if (volume.name == "optical_depth") {
+        add("description", "Optical depth of what lies between a place and the sun, at the middles "
+                           "of voxels.");
+        add("light", "extinction");
+        return notes;
+    }
+    add("description",
+        "-ln of the sun's light that reaches a place, at the middles of voxels; what "
+        "scatters straight on is not taken out.");
+    const bool product = options.light == cloud_light::product;
+    add("light", product ? "product" : "continuum");
+    notes.emplace_back("forward", static_cast<float>(product ? options.phase.forward_value()
+                                                             : options.phase.forward_energy()));
+    return notes;
+}
+
 } // namespace
 
 result<void> read_cloud(cloud_job& job) {
@@ -219,7 +330,9 @@ result<void> write_volumes(const cloud_job& job, const std::vector<finished_volu
         all.push_back({volume.name,
                        volume.values,
                        {volume.voxels.x, volume.voxels.y, volume.voxels.z},
-                       world_of(volume.grid)});
+                       world_of(volume.grid),
+                       volume.half,
+                       notes_of(job.options, volume)});
     }
     return io::write_vdb(job.out, all);
 }
@@ -233,8 +346,9 @@ command add_cloud_command(CLI::App& to) {
                       "built-in cloud (--list)");
     cloud
         ->add_option("-o,--output", words->out,
-                     "A picture (.png), the optical depth towards the sun as a volume (.vdb), or "
-                     "with --probe a table (.csv); required")
+                     "A picture (.png), the optical depth towards the sun as a volume (.vdb, whose "
+                     "grids say what they hold in their metadata), or with --probe a table "
+                     "(.csv); required")
         ->type_name("OUT");
     add_cloud_options(*cloud, words->more);
     cloud->add_flag("--list", words->list, "Name the built-in clouds, and do nothing else");

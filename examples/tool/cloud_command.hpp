@@ -12,6 +12,7 @@
 #include <skybark/clouds/light_at_points.hpp>
 #include <skybark/clouds/multiple_scattering.hpp>
 
+#include <cstdio>
 #include <glm/gtc/packing.hpp>
 #include <numbers>
 #include <optional>
@@ -53,6 +54,18 @@ class cloud_maker {
         return fail(e.code, io::in_quotes(job_.input) + ": " + e.message);
     }
 
+    /// The same with the box, which one voxel far from the others makes large.
+    [[nodiscard]] failure about_densities(const error& e) const {
+        const auto text = [](glm::vec3 p) {
+            char numbers[64];
+            std::snprintf(numbers, sizeof numbers, "(%.6g, %.6g, %.6g)", double{p.x}, double{p.y},
+                          double{p.z});
+            return std::string(numbers);
+        };
+        return about_input({e.code, e.message + " Its active voxels reach from " + text(job_.low) +
+                                        " to " + text(job_.high) + " m."});
+    }
+
     [[nodiscard]] result<void> upload() {
         job_.time.begin("build");
         if (!job_.is_grid()) {
@@ -67,7 +80,7 @@ class cloud_maker {
         const glm::uvec3 voxels = job_.grid.voxels;
         auto made = device_.create_volume({voxels.x, voxels.y, voxels.z, volume_format::float32});
         if (!made) {
-            return about_input(made.error());
+            return about_densities(made.error());
         }
         density_ = std::move(*made);
         return device_.upload(*density_, std::as_bytes(std::span(job_.grid.density)));
@@ -299,7 +312,11 @@ class cloud_maker {
                                     const light_grid& grid, std::vector<finished_volume>& in) {
         job_.time.begin("draw");
         const volume_description what = volume.description();
-        in.push_back({name, grid, {what.width, what.height, what.depth}, {}});
+        in.push_back({name,
+                      grid,
+                      {what.width, what.height, what.depth},
+                      {},
+                      what.format == volume_format::float16});
         std::vector<float>& values = in.back().values;
         values.resize(std::size_t{what.width} * what.height * what.depth);
         if (what.format == volume_format::float32) {

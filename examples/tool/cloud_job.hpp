@@ -12,6 +12,13 @@
 
 namespace skybark::tool {
 
+/// Particles that are too small for the voxels of a volume.
+struct thin_particles {
+    std::size_t count = 0;
+    double share = 0;         ///< of all optical depth times area
+    double enough_voxels = 0; ///< along each side, for all but a hundredth of that
+};
+
 struct cloud_job : command_job {
     explicit cloud_job(bool quiet)
         : command_job({"read", "build", "light", "draw", "write"}, quiet) {}
@@ -27,6 +34,7 @@ struct cloud_job : command_job {
 
     // Filled by `make_cloud`, for the report.
     clouds::light_box box;
+    thin_particles thin; ///< for that box
 
     [[nodiscard]] bool is_grid() const { return options.source == cloud_source::grid; }
 };
@@ -37,6 +45,7 @@ struct finished_volume {
     light_grid grid;
     glm::uvec3 voxels{0};
     std::vector<float> values;
+    bool half = false; ///< it held 16 bits a value
 };
 
 /// Reads the cloud, and the points.

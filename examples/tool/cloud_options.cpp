@@ -33,7 +33,17 @@ constexpr named<accumulate_route> routes[] = {{"direct", accumulate_route::direc
 
 constexpr cloud_entry built_in[] = {
     {"cumulus", "one cloud of fair weather", cloud_source::cumulus},
-    {"cumulus_field", "a dozen of them over 8 by 8 km", cloud_source::cumuli}};
+    {"cumulus_field", "two dozen of them over 9 by 9 km", cloud_source::cumuli}};
+
+template <class T, std::size_t N>
+std::string_view name_among(const named<T> (&names)[N], T value) {
+    for (const auto& [name, one] : names) {
+        if (one == value) {
+            return name;
+        }
+    }
+    return {};
+}
 
 result<cloud_source> source_of(const std::string& input) {
     for (const cloud_entry& entry : built_in) {
@@ -135,7 +145,7 @@ result<void> check_phase(const cloud_option_words& words, cloud_options& options
         return contradiction("--phase is " + io::in_quotes(text) +
                              "; expected isotropic, hg:G with G from -0.999 to 0.999, "
                              "draine:G,ALPHA with ALPHA from 0, or mie:D with droplets of 5 to 50 "
-                             "µm.");
+                             "µm across.");
     }
     options.phase = *phase;
     return {};
@@ -145,6 +155,7 @@ result<void> check_phase(const cloud_option_words& words, cloud_options& options
 result<void> check_method(const cloud_option_words& words, cloud_options& options) {
     if (options.method != cloud_method::shadow_polygons) {
         for (const auto& [given, option] : {std::pair{words.polygons.has_value(), "--polygons"},
+                                            std::pair{words.padding.has_value(), "--padding"},
                                             std::pair{words.route.has_value(), "--route"}}) {
             if (given) {
                 return contradiction(std::string(option) +
@@ -176,7 +187,8 @@ result<void> check_method(const cloud_option_words& words, cloud_options& option
     return {};
 }
 
-result<void> check_source(const cloud_option_words& words, const cloud_options& options) {
+result<void> check_source(const cloud_option_words& words, bool seeded,
+                          const cloud_options& options) {
     const bool is_grid = options.source == cloud_source::grid;
     const bool is_made =
         options.source == cloud_source::cumulus || options.source == cloud_source::cumuli;
@@ -188,9 +200,24 @@ result<void> check_source(const cloud_option_words& words, const cloud_options& 
                                  "with a .vdb.");
         }
     }
-    if (words.particles && !is_made) {
-        return contradiction("--particles is given, but INPUT is a file; expected it with a "
-                             "built-in cloud, such as cumulus.");
+    for (const auto& [given, option] :
+         {std::pair{words.particles.has_value(), "--particles"}, std::pair{seeded, "--seed"}}) {
+        if (given && !is_made) {
+            return contradiction(std::string(option) +
+                                 " is given, but INPUT is a file; expected it with a built-in "
+                                 "cloud, such as cumulus.");
+        }
+    }
+    if (options.source == cloud_source::cumuli && options.particles < clouds_of_field) {
+        return contradiction("--particles is " + io::in_quotes(*words.particles) +
+                             ", and cumulus_field has " + std::to_string(clouds_of_field) +
+                             " clouds; expected one particle a cloud at least.");
+    }
+    if (words.grid && !is_grid) {
+        return contradiction("--grid is given, but INPUT is no .vdb; expected both.");
+    }
+    if (words.grid && words.grid->empty()) {
+        return contradiction("--grid is empty; expected the name of a grid of the .vdb.");
     }
     if (is_grid && options.method != cloud_method::impulse_scan) {
         return contradiction("INPUT is a density, which has no particles; expected --method "
@@ -201,9 +228,41 @@ result<void> check_source(const cloud_option_words& words, const cloud_options& 
                              "how a cloud is cut into particles; expected --light continuum, its "
                              "limit.");
     }
-    if (is_grid && words.profile) {
-        return contradiction("INPUT is a density, which has no particles with a --profile; "
-                             "expected none.");
+    for (const auto& [given, option] : {std::pair{words.profile.has_value(), "--profile"},
+                                        std::pair{words.sigmas.has_value(), "--sigmas"}}) {
+        if (given && is_grid) {
+            return contradiction(std::string("INPUT is a density, which has no particles with ") +
+                                 option + "; expected none.");
+        }
+    }
+    return {};
+}
+
+/// What only a picture has, and what only the light of one output depends on.
+result<void> check_output(const cloud_option_words& words, const cloud_option_context& context,
+                          const cloud_options& options) {
+    if (words.octaves && options.light != cloud_light::octaves) {
+        return contradiction("--octaves is given without --light octaves; expected both.");
+    }
+    if (options.output == cloud_output::picture) {
+        return {};
+    }
+    for (const auto& [given, option] :
+         {std::pair{context.size, "--size"}, std::pair{words.camera.has_value(), "--camera"},
+          std::pair{words.look_at.has_value(), "--look-at"}}) {
+        if (given) {
+            return contradiction(std::string(option) + " is given, but -o is " +
+                                 io::in_quotes(context.out) +
+                                 ", which is no picture; expected it with a .png.");
+        }
+    }
+    if (words.octaves && options.output == cloud_output::volume) {
+        return contradiction("--octaves is given, but a .vdb holds optical depths, of which "
+                             "octaves are made later; expected none.");
+    }
+    if (words.phase && options.light == cloud_light::octaves) {
+        return contradiction("--phase is given, but --light octaves needs optical depths alone "
+                             "where no picture is drawn; expected none.");
     }
     return {};
 }
@@ -212,9 +271,16 @@ result<void> check_source(const cloud_option_words& words, const cloud_options& 
 
 std::span<const cloud_entry> all_clouds() { return built_in; }
 
+std::string_view name_of(cloud_method method) { return name_among(methods, method); }
+std::string_view name_of(cloud_light light) { return name_among(lights, light); }
+std::string_view name_of(clouds::attenuation_profile profile) {
+    return name_among(profiles, profile);
+}
+
 void add_cloud_options(CLI::App& to, cloud_option_words& words) {
     to.add_option("--sun", words.sun,
-                  "Where it stands, in degrees clockwise from north and above the horizon (120,50)")
+                  "Where it stands, in degrees: clockwise from north, -360 to 360, and above the "
+                  "horizon, 0 to 90 for a picture and else -90 to 90 (120,50)")
         ->type_name("AZIMUTH,ELEVATION");
     to.add_option("--volume", words.volume,
                   "Voxels along each side of the attenuation volume, 4 to 65536 (128)")
@@ -240,18 +306,25 @@ void add_cloud_options(CLI::App& to, cloud_option_words& words) {
     to.add_option("--octaves", words.octaves, "Of --light octaves, 1 to 32 (8)")->type_name("N");
     to.add_option("--phase", words.phase,
                   "How droplets scatter: isotropic, hg:G, draine:G,ALPHA or mie:D, droplets of D "
-                  "µm (mie:10; for the product draine:0,1, which is Rayleigh's)")
+                  "µm across (mie:10; for the product draine:0,1, which is Rayleigh's)")
         ->type_name("F");
     to.add_option("--sigmas", words.sigmas,
-                  "Standard deviations in a particle's radius, 0.1 to 9 (3)")
+                  "Standard deviations in a particle's radius, 0.1 to 9 (3); 4 for depths over 30, "
+                  "whose cut at 3 is a rim that one sees")
         ->type_name("S");
+    to.add_option("--grid", words.grid,
+                  "Of a .vdb: which of its grids is the density (density, or the only one)")
+        ->type_name("NAME");
     to.add_option("--extinction", words.extinction,
                   "Of a density (.vdb): what of the light 1 takes out, in 1/m (1)")
         ->type_name("E");
     to.add_option("--albedo", words.albedo, "Of a density: what of that is scattered, 0 to 1 (1)")
         ->type_name("A");
-    to.add_option("--particles", words.particles, "Of a built-in cloud (12000)")->type_name("N");
-    to.add_flag("--half", words.half, "Floats of 16 bits in the volume");
+    to.add_option("--particles", words.particles,
+                  "Of a built-in cloud (12000); cumulus_field has 24 clouds, and as many times "
+                  "what each gets")
+        ->type_name("N");
+    to.add_flag("--half", words.half, "Floats of 16 bits in the volume, and in its .vdb");
     to.add_option("--probe", words.probe,
                   "Places x,y,z, for which a .csv says the optical depth towards the sun and the "
                   "light over that of the sun")
@@ -292,16 +365,15 @@ result<cloud_options> check(const cloud_option_words& words, const cloud_option_
         read("--particles", words.particles, 1, most_particles, options.particles),
         check_method(words, options),
         check_phase(words, options),
-        check_source(words, options),
+        check_source(words, context.seed, options),
+        check_output(words, context, options),
     };
     for (const result<void>& one : all) {
         if (!one) {
             return failure(one.error());
         }
     }
-    if (words.octaves && options.light != cloud_light::octaves) {
-        return contradiction("--octaves is given without --light octaves; expected both.");
-    }
+    options.grid = words.grid.value_or("");
     volume.method = options.method == cloud_method::shadow_polygons
                         ? clouds::attenuation_method::shadow_polygons
                         : clouds::attenuation_method::impulse_scan;

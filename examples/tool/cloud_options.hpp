@@ -24,6 +24,7 @@ struct cloud_option_words {
     std::optional<std::string> octaves;
     std::optional<std::string> phase;
     std::optional<std::string> sigmas;
+    std::optional<std::string> grid;
     std::optional<std::string> extinction;
     std::optional<std::string> albedo;
     std::optional<std::string> particles;
@@ -52,6 +53,14 @@ enum class cloud_output {
 enum class cloud_method { impulse_scan, shadow_polygons, harris };
 enum class cloud_light { product, continuum, octaves, multiple };
 
+/// As the command line calls it.
+[[nodiscard]] std::string_view name_of(cloud_method method);
+[[nodiscard]] std::string_view name_of(cloud_light light);
+[[nodiscard]] std::string_view name_of(clouds::attenuation_profile profile);
+
+/// How many clouds the built-in field has.
+inline constexpr std::uint32_t clouds_of_field = 24;
+
 struct cloud_options {
     cloud_source source = cloud_source::table;
     cloud_output output = cloud_output::picture;
@@ -64,6 +73,7 @@ struct cloud_options {
     clouds::phase_function phase;
     /// The attenuation volume, with extinction for its light.
     clouds::attenuation_options attenuation;
+    std::string grid;                ///< of a .vdb: its name; empty: none was asked for
     float extinction = 1;            ///< of a grid: 1/m that a density of 1 means
     float albedo = 1;                ///< of a grid
     std::uint32_t particles = 12000; ///< of a built-in cloud
@@ -74,7 +84,9 @@ struct cloud_options {
 /// What the other words of the command say, as far as it matters here.
 struct cloud_option_context {
     std::string input;
-    std::string out; ///< -o
+    std::string out;   ///< -o
+    bool size = false; ///< --size was typed
+    bool seed = false; ///< --seed was typed
 };
 
 /// A built-in cloud.

@@ -52,7 +52,7 @@ result<void> check_words(const gather_words& words, gather_job& job) {
         return failure(options.error());
     }
     // A state may be gone on with in place.
-    if (auto good = check_apart({words.input, words.out, words.common.stats, options->points,
+    if (auto good = check_apart({words.input, words.out, common->stats, options->points,
                                  options->unwrapped, options->save},
                                 "SCENE, -o, --points, --unwrapped, --save and --stats");
         !good) {

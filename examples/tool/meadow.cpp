@@ -31,7 +31,7 @@ result<void> check_words(const meadow_words& words, meadow_job& job) {
     if (!options) {
         return failure(options.error());
     }
-    if (auto good = check_apart({words.out, words.common.stats}, "-o and --stats"); !good) {
+    if (auto good = check_apart({words.out, common->stats}, "-o and --stats"); !good) {
         return good;
     }
     job.common = *common;

@@ -125,18 +125,21 @@ result<common_options> check(const common_words& words) {
         options.device = *device;
         options.any_device = false;
     }
-    const auto size = parse_size(words.size);
+    const auto size = parse_size(words.size.value_or("1280x800"));
     if (!size) {
         return failure(size.error());
     }
     options.width = size->first;
     options.height = size->second;
-    const auto seed = whole_number("--seed", words.seed, 0);
+    const auto seed = whole_number("--seed", words.seed.value_or("1"), 0);
     if (!seed) {
         return failure(seed.error());
     }
     options.seed = *seed;
-    options.stats = words.stats;
+    if (words.stats && words.stats->empty()) {
+        return contradiction("--stats is empty; expected the name of a file, such as stats.json.");
+    }
+    options.stats = words.stats.value_or("");
     options.quiet = words.quiet;
     return options;
 }

@@ -28,14 +28,14 @@ enum exit_code : int {
     exit_unavailable = 3, ///< the backend
 };
 
-/// The common options as they were typed. Numbers stay text until `check`, so that what is wrong
-/// with one is said in our words.
+/// The common options as they were typed; nothing where they weren't. Numbers stay text until
+/// `check`, so that what is wrong with one is said in our words.
 struct common_words {
     std::string backend = "cpu";
     std::string device;
-    std::string size = "1280x800";
-    std::string seed = "1";
-    std::string stats;
+    std::optional<std::string> size;
+    std::optional<std::string> seed;
+    std::optional<std::string> stats;
     bool quiet = false;
 };
 

@@ -141,8 +141,7 @@ result<void> check_words(const tree_words& words, tree_job& job) {
     if (!more) {
         return failure(more.error());
     }
-    if (auto good =
-            check_apart({words.input, words.out, words.common.stats}, "INPUT, -o and --stats");
+    if (auto good = check_apart({words.input, words.out, common->stats}, "INPUT, -o and --stats");
         !good) {
         return good;
     }

@@ -99,7 +99,9 @@ TEST(cloud_options, are_what_was_typed) {
     EXPECT_EQ(options.attenuation.format, skybark::volume_format::float16);
     EXPECT_EQ(*options.camera.eye, glm::vec3(1, 2, 3));
     EXPECT_EQ(*options.camera.target, glm::vec3(4, 5, 6));
-    const cloud_options grid = accepted({"--extinction", "0.045", "--albedo", "0.9"}, of_grid);
+    const cloud_options grid =
+        accepted({"--extinction", "0.045", "--albedo", "0.9", "--grid", "smoke"}, of_grid);
+    EXPECT_EQ(grid.grid, "smoke");
     EXPECT_EQ(grid.source, cloud_source::grid);
     EXPECT_EQ(grid.extinction, 0.045f);
     EXPECT_EQ(grid.albedo, 0.9f);
@@ -173,7 +175,7 @@ TEST(cloud_options, refuse_what_contradicts_itself) {
     expect_refused({"--method", "harris"}, {"harris", ".png"}, {"a.csv", "a.vdb"});
     EXPECT_EQ(accepted({"--method", "harris", "--light", "product"}).light, cloud_light::product);
     EXPECT_EQ(accepted({"--method", "harris"}).light, cloud_light::product);
-    EXPECT_EQ(accepted({"--padding", "compact"}).method, cloud_method::impulse_scan);
+    expect_refused({"--padding", "compact"}, {"--padding", "--method shadow_polygons"});
     expect_refused({"--extinction", "2"}, {"--extinction", ".vdb"});
     expect_refused({"--albedo", "1"}, {"--albedo", ".vdb"});
     expect_refused({"--particles", "9"}, {"--particles", "cumulus"});
@@ -182,7 +184,39 @@ TEST(cloud_options, refuse_what_contradicts_itself) {
     expect_refused({"--method", "shadow_polygons"}, {"density", "impulse_scan"}, of_grid);
     expect_refused({"--method", "harris"}, {"density", "impulse_scan"}, of_grid);
     expect_refused({"--profile", "step"}, {"density", "--profile"}, of_grid);
+    expect_refused({"--sigmas", "2"}, {"density", "--sigmas"}, of_grid);
+    expect_refused({"--grid", "smoke"}, {"--grid", ".vdb"});
+    expect_refused({"--grid", ""}, {"--grid is empty"}, of_grid);
+    expect_refused({"--particles", "23"}, {"--particles", "\"23\"", "24 clouds"},
+                   {"cumulus_field", "a.png"});
+    EXPECT_EQ(accepted({"--particles", "24"}, {"cumulus_field", "a.png"}).particles, 24u);
     expect_refused({"--camera", "1,2,3"}, {"--camera", "--look-at"});
+}
+
+// What the output or INPUT has no use for, in place of being passed over.
+TEST(cloud_options, refuse_what_would_not_matter) {
+    const cloud_option_context to_volume{"a.csv", "b.vdb"};
+    const cloud_option_context to_places{"a.csv", "b.csv"};
+    cloud_option_context sized = to_volume;
+    sized.size = true;
+    expect_refused({}, {"--size", "b.vdb", "no picture", ".png"}, sized);
+    sized.out = "b.csv";
+    expect_refused({"--probe", "p.csv"}, {"--size", "b.csv", ".png"}, sized);
+    sized.out = "b.png";
+    (void)accepted({}, sized);
+    expect_refused({"--camera", "1,2,3", "--look-at", "4,5,6"}, {"--camera", ".png"}, to_volume);
+    expect_refused({"--probe", "p.csv", "--camera", "1,2,3", "--look-at", "4,5,6"},
+                   {"--camera", ".png"}, to_places);
+    expect_refused({"--look-at", "4,5,6"}, {"--look-at", ".png"}, to_volume);
+    for (const char* input : {"a.csv", "a.vdb"}) {
+        expect_refused({}, {"--seed", "is a file", "cumulus"}, {input, "a.png", false, true});
+    }
+    (void)accepted({}, {"cumulus", "a.png", true, true});
+    expect_refused({"--light", "octaves", "--octaves", "3"}, {"--octaves", ".vdb"}, to_volume);
+    expect_refused({"--light", "octaves", "--phase", "isotropic"}, {"--phase", "octaves"},
+                   to_volume);
+    (void)accepted({"--light", "octaves", "--phase", "isotropic", "--octaves", "3"});
+    (void)accepted({"--light", "octaves", "--octaves", "3", "--probe", "p.csv"}, to_places);
 }
 
 TEST(cloud_options, know_what_goes_in_and_out) {
@@ -210,9 +244,10 @@ TEST(cloud_options, take_any_text) {
     const words files{"a.csv", "a.vdb", "a.png", "cumulus", "b.csv", "\xff", ""};
     for (int i = 0; i < 20000; ++i) {
         cloud_option_words all;
-        for (auto* word : {&all.sun, &all.volume, &all.method, &all.padding, &all.polygons,
-                           &all.route, &all.profile, &all.light, &all.octaves, &all.phase,
-                           &all.sigmas, &all.extinction, &all.albedo, &all.particles, &all.probe}) {
+        for (auto* word :
+             {&all.sun, &all.volume, &all.method, &all.padding, &all.polygons, &all.route,
+              &all.profile, &all.light, &all.octaves, &all.phase, &all.sigmas, &all.extinction,
+              &all.albedo, &all.particles, &all.probe, &all.grid}) {
             if (random() % 6 == 0) {
                 *word = some[random() % some.size()];
             }

@@ -253,8 +253,13 @@ TEST_F(tool_clouds, multiple_scattering_adds_light) {
         EXPECT_EQ(all[i].optical_depth, single[i].optical_depth);
         EXPECT_GT(all[i].light, single[i].light + 0.05);
     }
-    EXPECT_EQ(all[2].light, 1) << "above";
-    EXPECT_EQ(all[3].light, 1) << "beside";
+    // Outside of the box, what the cloud sends there: less than half of the sun's fluence comes
+    // from its edge, under the solid angle of a ball of 110 m, the box's half diagonal, 200 m and
+    // 900 m away: 8 % and 0.4 % of all directions.
+    EXPECT_GT(all[3].light, 1) << "beside";
+    EXPECT_LT(all[3].light, 1.002);
+    EXPECT_GT(all[2].light, all[3].light) << "above, nearer";
+    EXPECT_LT(all[2].light, 1.04);
 }
 
 // Clouds with much room between them, in voxels that are four to thirty times as wide as high. In
@@ -373,6 +378,46 @@ TEST_F(tool_clouds, backends_draw_the_same_picture) {
     }
 }
 
+TEST_F(tool_clouds, takes_the_grid_that_is_named) {
+    std::vector<skybark::io::vdb_volume> volumes(2);
+    const std::vector<float> thin(64, 0.1f);
+    const std::vector<float> thick(64, 0.2f);
+    volumes[0].name = "smoke";
+    volumes[0].values = thin;
+    volumes[1].name = "fog";
+    volumes[1].values = thick;
+    for (skybark::io::vdb_volume& volume : volumes) {
+        volume.voxels = {4, 4, 4};
+    }
+    if (const auto written = skybark::io::write_vdb(in_folder("two.vdb"), volumes); !written) {
+        GTEST_SKIP() << written.error().message;
+    }
+    for (const auto& [grid, depth] : {std::pair{"smoke", 0.4}, std::pair{"fog", 0.8}}) {
+        const auto found = probes("cpu", "two.vdb", "2,-5,2\n",
+                                  {"--sun", "0,90", "--volume", "32", "--grid", grid});
+        ASSERT_EQ(found.size(), 1u);
+        // Its edges are smeared over a voxel of the light's.
+        EXPECT_NEAR(found[0].optical_depth, depth, 0.02 * depth) << grid;
+    }
+    std::filesystem::remove(folder / "light.csv");
+    expect_failed({"cloud", in_folder("two.vdb"), "-o", in_folder("a.png")},
+                  {"two.vdb", "\"smoke\" (float), \"fog\" (float)", "--grid"});
+    expect_failed({"cloud", in_folder("two.vdb"), "--grid", "fire", "-o", in_folder("a.png")},
+                  {"two.vdb", "\"fire\"", "\"smoke\" (float)"});
+}
+
+TEST_F(tool_clouds, volumes_are_the_same_bytes_each_time) {
+    const auto saved = [&](const char* sun) {
+        const outcome o = skybark({"cloud", in_folder("one.csv"), "--volume", "16", "--sun", sun,
+                                   "-o", in_folder("a.vdb")});
+        EXPECT_EQ(o.code, 0) << o.err;
+        return read_file(folder / "a.vdb");
+    };
+    const std::string one = saved("120,50");
+    EXPECT_EQ(saved("120,50"), one);
+    EXPECT_NE(saved("120,51"), one);
+}
+
 TEST_F(tool_clouds, draws_densities) {
     if (const auto written = write_layers(in_folder("layers.vdb")); !written) {
         GTEST_SKIP() << written.error().message;
@@ -412,6 +457,36 @@ TEST_F(tool_clouds, built_in_clouds_come_from_their_seed) {
     const outcome list = skybark({"cloud", "--list"});
     EXPECT_EQ(list.code, 0);
     EXPECT_TRUE(has(list.out, {"cumulus ", "cumulus_field "}));
+}
+
+// Two wide particles, and in the second cloud one as deep of a hundredth of their radius: no voxel
+// of 2 · 10 m / 29 has its middle within it for sure.
+TEST_F(tool_clouds, notes_particles_that_are_smaller_than_voxels) {
+    const auto run_with = [&](const std::string& row, words more) {
+        write_file(in_folder("c.csv"), header + "0,0,0,10,1,1\n" + row);
+        more.insert(more.begin(),
+                    {"cloud", in_folder("c.csv"), "-o", in_folder("a.png"), "--size", "16x8",
+                     "--volume", "32", "--sun", "0,90", "--stats", in_folder("s.json")});
+        outcome o = skybark(more);
+        EXPECT_EQ(o.code, 0) << o.err;
+        const auto stats = nlohmann::json::parse(read_file(folder / "s.json"), nullptr, false);
+        return std::pair{o, stats["counts"]["thin_particles"].get<int>()};
+    };
+    const auto [one, none_thin] = run_with("", {});
+    EXPECT_EQ(one.err, "");
+    EXPECT_EQ(none_thin, 0);
+    EXPECT_TRUE(has(one.out, {"a.png: 1 particle, 32 x"}));
+    // 0.1² of 10² of the area, times 20: 1/501 of the water.
+    const auto [little, one_thin] = run_with("0,0,0,0.1,20,1\n", {});
+    EXPECT_EQ(little.err, "");
+    EXPECT_EQ(one_thin, 1);
+    EXPECT_TRUE(has(little.out, {"a.png: 2 particles, 32 x"}));
+    // 0.1² × 1000 of 10² + 0.1² × 1000: 1/11, and 32 · 0.69 / 0.1 voxels a side.
+    const auto [noted, still_one] = run_with("0,0,0,0.1,1000,1\n", {});
+    EXPECT_EQ(still_one, 1);
+    EXPECT_TRUE(is_sentence(noted.err));
+    EXPECT_TRUE(has(noted.err, {"1 of 2 particles", "9.1 %", "0.69", "--volume 22"}));
+    EXPECT_EQ(run_with("0,0,0,0.1,1000,1\n", {"--quiet"}).first.err, "");
 }
 
 TEST_F(tool_clouds, stats_say_what_there_was) {
@@ -469,7 +544,7 @@ TEST_F(tool_clouds, says_what_is_wrong_with_particles) {
 TEST_F(tool_clouds, draws_no_cloud_where_floats_cannot_tell_its_places) {
     const auto with_particle = [&](const std::string& row, const std::string& out) {
         write_file(in_folder("far.csv"), header + row + "\n");
-        return words{"cloud", in_folder("far.csv"), "--volume", "8", "--size", "16x8",
+        return words{"cloud", in_folder("far.csv"), "--volume", "8",
                      "-o",    in_folder(out),       "--quiet"};
     };
     expect_failed(with_particle("1e9,0,0,1,1,1", "a.png"),
@@ -562,6 +637,12 @@ TEST_F(tool_clouds, refuses_a_wrong_command_line) {
     refused({one, "-o", in_folder("a.csv")}, {"--probe POINTS.csv"});
     refused({one, "-o", in_folder("a.csv"), "--probe", one}, {"the same file"});
     refused({one, "-o", out, "--stats", out}, {"the same file"});
+    refused({one, "-o", out, "--stats", ""}, {"--stats is empty"});
+    refused({one, "-o", out, "--seed", "2"}, {"--seed", "is a file"});
+    refused({one, "-o", in_folder("a.vdb"), "--size", "64x48"}, {"--size", "no picture"});
+    refused({one, "-o", out, "--grid", "density"}, {"--grid", ".vdb"});
+    refused({"--list", "-o", out}, {"--list", "-o"});
+    refused({"--list", "cumulus"}, {"--list", "INPUT"});
     refused({one, "-o", out, "--backend", "metal"}, {"--backend", "metal"});
     refused({one, "-o", out, "--what"}, {"--what"});
     EXPECT_EQ(skybark({"cloud", one, "-o", out, "--device", "9"}).code, 3);
@@ -570,14 +651,17 @@ TEST_F(tool_clouds, refuses_a_wrong_command_line) {
 TEST_F(tool_clouds, leaves_no_half_of_a_file) {
     write_file(in_folder("p.csv"), "x,y,z\n0,0,0\n");
     const auto expect_unwritten = [&](const std::string& out, words more, const std::string& why) {
-        more.insert(more.begin(), {"cloud", in_folder("one.csv"), "--volume", "16", "--size",
-                                   "640x480", "-o", out});
+        more.insert(more.begin(), {"cloud", in_folder("one.csv"), "--volume", "16", "-o", out});
         const outcome o = skybark_after("ulimit -f 1", more);
         EXPECT_EQ(o.code, 1) << o.err;
         EXPECT_TRUE(is_sentence(o.err));
         EXPECT_TRUE(has(o.err, {out, why}));
     };
     expect_unwritten(in_folder("a.png"), {}, "File too large");
+    const outcome long_name =
+        skybark({"cloud", in_folder("one.csv"), "-o", in_folder(std::string(252, 'n') + ".png")});
+    EXPECT_EQ(long_name.code, 1);
+    EXPECT_TRUE(has(long_name.err, {"can't be written: its name has 256 bytes"}));
     expect_unwritten(in_folder("no/such/a.png"), {}, "no folder");
     expect_unwritten(in_folder("no/such/a.csv"), {"--probe", in_folder("p.csv")}, "no folder");
     std::filesystem::create_symlink("/dev/full", folder / "full.vdb");

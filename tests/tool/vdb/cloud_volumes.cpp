@@ -59,6 +59,9 @@ TEST_F(tool, a_volume_says_what_its_places_say) {
             const auto attenuation = read_grid(in_folder("v.vdb"), "attenuation");
             const auto fluence = read_grid(in_folder("v.vdb"), "diffuse_fluence");
             ASSERT_TRUE(depth && attenuation && fluence);
+            EXPECT_EQ(depth->saveFloatAsHalf(), *format != '\0');
+            EXPECT_EQ(attenuation->saveFloatAsHalf(), *format != '\0');
+            EXPECT_FALSE(fluence->saveFloatAsHalf()) << "it is whole floats on the device";
 
             std::string points = "x,y,z\n";
             std::vector<openvdb::Coord> cells;
@@ -98,4 +101,65 @@ TEST_F(tool, a_volume_says_what_its_places_say) {
             EXPECT_GT(compared, 1000u);
         }
     }
+}
+
+TEST_F(tool, a_volume_says_what_it_is) {
+    write_file(in_folder("c.csv"), "x,y,z,radius,optical_depth,albedo\n0,0,0,30,2,1\n");
+    const outcome o =
+        skybark({"cloud", in_folder("c.csv"), "--sun", "90,30", "--volume", "16", "--light",
+                 "multiple", "--phase", "hg:0.5", "-o", in_folder("v.vdb")});
+    ASSERT_EQ(o.code, 0) << o.err;
+    const auto text = [](const openvdb::FloatGrid& grid, const char* key) {
+        return grid.metaValue<std::string>(key);
+    };
+    for (const char* name : {"optical_depth", "attenuation", "diffuse_fluence"}) {
+        const auto grid = read_grid(in_folder("v.vdb"), name);
+        ASSERT_TRUE(grid);
+        // At 90,30 the sun stands in the east, half as high as far: cos 30°, sin 30°.
+        const auto sun = grid->metaValue<openvdb::Vec3s>("to_sun");
+        EXPECT_NEAR(sun.x(), std::sqrt(0.75), 1e-6);
+        EXPECT_NEAR(sun.y(), 0.5, 1e-6);
+        EXPECT_NEAR(sun.z(), 0, 1e-6);
+        EXPECT_EQ(grid->metaValue<float>("sun_azimuth"), 90);
+        EXPECT_EQ(grid->metaValue<float>("sun_elevation"), 30);
+        EXPECT_EQ(text(*grid, "units"), "1");
+        EXPECT_EQ(text(*grid, "profile"), "erf");
+        EXPECT_EQ(text(*grid, "method"), "impulse_scan");
+        EXPECT_EQ(grid->metaValue<float>("sigmas"), 3);
+        EXPECT_TRUE(has(text(*grid, "creator"), {"Skybark 0."}));
+        EXPECT_GT(text(*grid, "description").size(), 40u);
+    }
+    const auto depth = read_grid(in_folder("v.vdb"), "optical_depth");
+    EXPECT_TRUE(has(text(*depth, "outside"), {"undermost layer", "goes on"}));
+    EXPECT_EQ(text(*depth, "light"), "extinction");
+    const auto attenuation = read_grid(in_folder("v.vdb"), "attenuation");
+    EXPECT_EQ(text(*attenuation, "light"), "continuum");
+    EXPECT_EQ(attenuation->metaValue<float>("forward"), 0.25f) << "g²";
+    EXPECT_EQ(text(*read_grid(in_folder("v.vdb"), "diffuse_fluence"), "light"), "multiple");
+}
+
+// One voxel that a simulation left far away: the sentence says how far.
+TEST_F(tool, says_where_a_stray_voxel_is) {
+    openvdb::initialize();
+    const auto grid = openvdb::FloatGrid::create(0.0f);
+    grid->setName("density");
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(2.0));
+    grid->tree().setValue({0, 0, 0}, 1.0f);
+    const auto refused = [&](int far) {
+        grid->tree().setValue({far, 9, 9}, 1.0f);
+        openvdb::io::File file(in_folder("stray.vdb"));
+        file.write({grid});
+        file.close();
+        const outcome o = skybark({"cloud", in_folder("stray.vdb"), "-o", in_folder("a.png")});
+        EXPECT_EQ(o.code, 1);
+        EXPECT_TRUE(is_sentence(o.err));
+        return o.err;
+    };
+    // More than a volume's side may have on any device, and more than any file.
+    EXPECT_TRUE(has(refused(99999), {"stray.vdb", "100000 x 10 x 10",
+                                     "reach from (-1, -1, -1) to (199999, 19, 19) m."}));
+    EXPECT_TRUE(
+        has(refused(99999999), {"stray.vdb", "100000000 x 10 x 10 in its grid \"density\"",
+                                "from the index (0, 0, 0) to (99999999, 9, 9); expected at most"}));
 }
