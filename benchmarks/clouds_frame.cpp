@@ -110,7 +110,7 @@ class cloud_frame {
             relight(to, *sky_, glm::vec3(0, 1, 0));
         }
         if (what == part::scatter || what == part::all) {
-            diffuse_->solve(to, sun_->volume(), sun_->box());
+            diffuse_->solve(to, *sun_);
         }
         if (what == part::draw || what == part::all || what == part::torn) {
             draw(to, what == part::torn);

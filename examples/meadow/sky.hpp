@@ -70,7 +70,7 @@ class sky {
         drift_->record(to, moved, count_);
         sun_->relight(to, drift_->particles(), count_, sun_box_);
         above_->relight(to, drift_->particles(), count_, above_box_);
-        scattered_->solve(to, sun_->volume(), sun_box_);
+        scattered_->solve(to, *sun_);
     }
 
     /// Draws the clouds of the latest `record` into an image of their own: `scene` is one
@@ -158,14 +158,9 @@ class sky {
     [[nodiscard]] result<void> prepare(B& device, const description& what) {
         const glm::uvec3 voxels(what.cloud_voxels);
         voxels_ = voxels;
-        clouds::attenuation_options light;
-        light.light = clouds::attenuation_light::continuum;
-        light.forward = static_cast<float>(phase_.forward_energy());
+        const clouds::attenuation_options light = clouds::light_of(phase_);
         clouds::multiple_scattering_options scattering;
-        scattering.medium.albedo = 1;
-        scattering.medium.mean_cosine = static_cast<float>(phase_.mean_cosine());
-        scattering.medium.forward = light.forward;
-        scattering.share = clouds::share_of(scattering.medium);
+        scattering.medium = clouds::medium_of(phase_, 1);
         scattering.cycles = 2;
         auto drift = clouds::drifting_particles<B>::create(
             device, std::span<const cloud_particle>(field_.particles),

@@ -48,7 +48,7 @@ std::optional<lit<B>> light(B& device, attenuation_light what, std::uint32_t hal
     lit<B> made{std::move(*sun), std::move(*diffuse), *box};
     EXPECT_TRUE(run(device, [&](auto& recorder) {
         made.sun.relight(recorder, view<B>(*particles), 1, *box);
-        made.diffuse.solve(recorder, made.sun.volume(), *box);
+        made.diffuse.solve(recorder, made.sun);
     }));
     return made;
 }

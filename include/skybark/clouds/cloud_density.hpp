@@ -23,13 +23,15 @@ class cloud_density {
         return made;
     }
 
-    /// Appends the drawing of `density`, a volume of floats that lies in the box `where`, over
-    /// `color`. Rays end at what `depth` (depth32f, of the same size) shows.
+    /// Appends the drawing of `density`, a volume of floats that lies in the box `where` (which
+    /// passes check_density_box), over `color`. Rays end at what `depth` (depth32f, of the same
+    /// size) shows.
     void record(typename B::recorder& to, const typename B::volume& density,
                 const density_box& where, const buffer_view<B>& scene,
                 const cloud_light_sources<B>& light, const typename B::image& color,
                 const typename B::image& depth) const {
         assert(light.sun != nullptr);
+        assert(check_density_box(where) && "a density grid that cannot be drawn");
         to.upload(view<B>(*lighting_), bytes_of_one(light.lighting));
         const volume_description what = density.description();
         const glm::vec3 size = where.high - where.low;

@@ -17,6 +17,7 @@
 
 #include <cassert>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace skybark::clouds {
@@ -90,6 +91,7 @@ class harris_light {
     [[nodiscard]] result<void> relight(const buffer_view<B>& particles, std::uint32_t count,
                                        const light_box& box) {
         assert(box.voxels.x == columns_ && box.voxels.z == rows_ && count <= lights_.size());
+        lit_ = 0;
         if (auto done = sort(particles, count, box); !done) {
             return done;
         }
@@ -116,11 +118,15 @@ class harris_light {
             splat.k = k;
             lights_[numbers_[k]] = splat.incoming;
         }
+        lit_ = count;
         return {};
     }
 
-    /// Light at each particle's centre over the sun's, in the order of the particles.
-    [[nodiscard]] const std::vector<float>& lights() const noexcept { return lights_; }
+    /// Light at each particle's centre over the sun's, in the order of the particles: as many as
+    /// the latest `relight` was given, none where it failed.
+    [[nodiscard]] std::span<const float> lights() const noexcept {
+        return std::span(lights_).first(lit_);
+    }
 
   private:
     harris_light(B& device, std::uint32_t columns, std::uint32_t rows, std::uint32_t most,
@@ -160,7 +166,8 @@ class harris_light {
     std::uint32_t columns_;
     std::uint32_t rows_;
     harris_options options_;
-    std::vector<float> lights_;
+    std::vector<float> lights_; ///< room for the most particles
+    std::uint32_t lit_ = 0;     ///< of them by the latest relight
     std::vector<std::uint32_t> numbers_;
     std::optional<typename B::buffer> sun_;
     std::optional<typename B::buffer> light_;

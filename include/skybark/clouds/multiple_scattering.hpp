@@ -2,9 +2,12 @@
 // multiple_scattering: light of the sun that a cloud has scattered more than once, on the device,
 // from the attenuation volume alone, anew for every frame.
 //
-//     auto diffuse = multiple_scattering<B>::create(device, voxels, {scattering_medium{1, 0.85f}});
-//     attenuation.relight(recorder, particles, count, box);
-//     diffuse->solve(recorder, attenuation.volume(), box);
+//     auto sun = attenuation_volume<B>::create(device, voxels, light_of(phase));
+//     multiple_scattering_options options;
+//     options.medium = medium_of(phase, mean_albedo(particles));
+//     auto diffuse = multiple_scattering<B>::create(device, voxels, options);
+//     sun->relight(recorder, on_device, count, box);
+//     diffuse->solve(recorder, *sun);
 //     … diffuse->fluence() on diffuse->grid(box) …
 //
 // The model is diffusion of what has left the sun's beam. Of a phase function with mean cosine g,
@@ -46,7 +49,9 @@
 // kernels::lit_grid do that with this volume as their third, `diffuse_grid` = grid(box) and
 // `diffuse` = 1/4π. Fluence as a path tracer counts it is I + φ.
 
+#include <skybark/clouds/attenuation_volume.hpp>
 #include <skybark/clouds/light_box.hpp>
+#include <skybark/clouds/phase.hpp>
 #include <skybark/core/backend.hpp>
 #include <skybark/kernels/scatter_average.hpp>
 #include <skybark/kernels/scatter_coarsen.hpp>
@@ -59,6 +64,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <span>
 #include <vector>
 
 namespace skybark::clouds {
@@ -74,7 +80,8 @@ struct scattering_medium {
 struct multiple_scattering_options {
     scattering_medium medium;
     /// The attenuation in the volume over the optical depth: 1 for attenuation_light::extinction,
-    /// 1 − ωf (`share_of(medium)`) for the continuum's.
+    /// 1 − ωf (`share_of(medium)`) for the continuum's. `solve` with an attenuation_volume knows
+    /// it.
     float share = 1;
     std::uint32_t halvings = 1; ///< the fluence has 2^-halvings of the volume's resolution: 1…4,
                                 ///< and no more than leave a cell
@@ -89,8 +96,32 @@ struct multiple_scattering_options {
     return 1 - medium.albedo * medium.forward;
 }
 
-template <volume_backend B>
-requires maps_voxels<B, kernels::scatter_relax>
+/// How droplets of this phase function scatter, of this albedo each time.
+[[nodiscard]] inline scattering_medium medium_of(const phase_function& phase, float albedo) {
+    return {albedo, static_cast<float>(phase.mean_cosine()),
+            static_cast<float>(phase.forward_energy())};
+}
+
+/// Of particles that differ: the mean by optical depth; 1 where there is none.
+[[nodiscard]] inline float mean_albedo(std::span<const cloud_particle> particles) {
+    double scattered = 0;
+    double taken = 0;
+    for (const cloud_particle& p : particles) {
+        scattered += double{p.albedo} * double{p.optical_depth};
+        taken += double{p.optical_depth};
+    }
+    return taken > 0 ? static_cast<float>(scattered / taken) : 1.0f;
+}
+
+/// A backend with all kernels of multiple scattering.
+template <class B>
+concept scatters_light = volume_backend<B> && maps_voxels<B, kernels::scatter_medium> &&
+    maps_voxels<B, kernels::scatter_coarsen> && maps_voxels<B, kernels::scatter_limit> &&
+    maps_voxels<B, kernels::scatter_average> && maps_voxels<B, kernels::scatter_source> &&
+    maps_voxels<B, kernels::scatter_relax> && maps_voxels<B, kernels::scatter_restrict> &&
+    maps_voxels<B, kernels::scatter_prolong>;
+
+template <scatters_light B>
 class multiple_scattering {
   public:
     /// For attenuation volumes of `voxels` (each side 4 or more). Takes about 4 bytes for each of
@@ -136,9 +167,26 @@ class multiple_scattering {
         return made;
     }
 
+    /// Records the diffuse fluence for the cloud that `sun` was last relit with: extinction, or the
+    /// continuum of the medium's `forward`. (Of the product no optical depth can be told.) The
+    /// share is the volume's, whatever options().share was.
+    void solve(typename B::recorder& recorder,
+               const attenuation_volume<B>& sun) requires relights_volumes<B> {
+        assert(fits(sun.options()) && "light that tells no depth, or another medium's");
+        options_.share = share_of_light(sun.options());
+        solve(recorder, sun.volume(), sun.box());
+    }
+
+    /// Whether the light is extinction, or the continuum of the medium's `forward`.
+    [[nodiscard]] bool fits(const attenuation_options& light) const noexcept {
+        return light.light == attenuation_light::extinction ||
+               (light.light == attenuation_light::continuum &&
+                std::abs(light.forward - options_.medium.forward) <= 1e-5f);
+    }
+
     /// Records the diffuse fluence for the cloud whose attenuation is in `attenuation`, a volume of
-    /// floats that lies in `box`. As attenuation_volume makes it: nothing in the outermost layer of
-    /// voxels, but for what is below the cloud.
+    /// floats that lies in `box`, of options().share. As attenuation_volume makes it: nothing in
+    /// the outermost layer of voxels, but for what is below the cloud.
     void solve(typename B::recorder& recorder, const typename B::volume& attenuation,
                const light_box& box) {
         assert(box.voxels == voxels_ && "a box that was fitted for another volume");
@@ -158,7 +206,8 @@ class multiple_scattering {
     }
 
     /// φ over the sun's irradiance at the middle of every cell, of float32: what the latest `solve`
-    /// made. To sample trilinearly at cells_of(grid(box), place) / size().
+    /// made; before the first one it holds nothing, and another `solve` may make it in another
+    /// volume: ask anew after each. To sample trilinearly at cells_of(grid(box), place) / size().
     [[nodiscard]] const typename B::volume& fluence() const {
         const level& l = levels_[finest()];
         return l.volume[phi + l.current];
@@ -199,7 +248,7 @@ class multiple_scattering {
     }
     [[nodiscard]] const multiple_scattering_options& options() const noexcept { return options_; }
 
-    /// For the next `solve`. Errors: bad_input, and nothing is changed.
+    /// For the next `solve`; `share` as in the options. Errors: bad_input, and nothing is changed.
     [[nodiscard]] result<void> set_medium(const scattering_medium& medium, float share = 1) {
         multiple_scattering_options next = options_;
         next.medium = medium;
@@ -263,6 +312,12 @@ class multiple_scattering {
                             "; expected above 0 to 1, 1 to 4, 1 to 64, 0 to 100 and 0 to 100.");
         }
         return {};
+    }
+
+    [[nodiscard]] float share_of_light(const attenuation_options& light) const {
+        return light.light == attenuation_light::continuum
+                   ? 1 - options_.medium.albedo * light.forward
+                   : 1.0f;
     }
 
     [[nodiscard]] std::size_t finest() const { return options_.halvings - 1; }

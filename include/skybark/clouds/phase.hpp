@@ -4,7 +4,8 @@
 //
 //     auto droplets = clouds::phase_function::mie(10);                  // 10 µm across
 //     kernel.phase = droplets->parameters();                            // shared::phase_value
-//     options.forward = float(droplets->forward_energy());              // attenuation_options'
+//     auto light = clouds::light_of(*droplets);                         // attenuation_options
+//     auto medium = clouds::medium_of(*droplets, albedo);               // multiple_scattering's
 //
 // All are normalised to 1 over the sphere and take the cosine of the scattering angle.
 
