@@ -142,14 +142,7 @@ class cloud_maker {
     }
 
     [[nodiscard]] float forward_of(clouds::attenuation_light light) const {
-        switch (light) {
-        case clouds::attenuation_light::continuum:
-            return static_cast<float>(options_.phase.forward_energy());
-        case clouds::attenuation_light::product:
-            return static_cast<float>(options_.phase.forward_value());
-        default:
-            return 0;
-        }
+        return clouds::light_of(options_.phase, light).forward;
     }
 
     /// What the attenuation volume holds for the light that is asked for.
@@ -168,36 +161,18 @@ class cloud_maker {
     [[nodiscard]] result<clouds::multiple_scattering<B>> scatter(const lit_volume& lit) {
         job_.time.begin("build");
         clouds::multiple_scattering_options options;
-        options.medium.albedo = mean_albedo();
-        options.medium.mean_cosine = static_cast<float>(options_.phase.mean_cosine());
-        options.medium.forward = forward_of(clouds::attenuation_light::continuum);
-        options.share = clouds::share_of(options.medium);
+        options.medium = clouds::medium_of(
+            options_.phase, job_.is_grid() ? options_.albedo : clouds::mean_albedo(job_.particles));
         auto made = clouds::multiple_scattering<B>::create(device_, lit.box.voxels, options);
         if (!made) {
             return made;
         }
         job_.time.begin("light");
-        auto done = run(device_, [&](typename B::recorder& to) {
-            made->solve(to, lit.volume.volume(), lit.box);
-        });
+        auto done = run(device_, [&](typename B::recorder& to) { made->solve(to, lit.volume); });
         if (!done) {
             return failure(done.error());
         }
         return made;
-    }
-
-    /// By optical depth, where particles differ.
-    [[nodiscard]] float mean_albedo() const {
-        if (job_.is_grid()) {
-            return options_.albedo;
-        }
-        double scattered = 0;
-        double taken = 0;
-        for (const cloud_particle& p : job_.particles) {
-            scattered += double{p.albedo} * double{p.optical_depth};
-            taken += double{p.optical_depth};
-        }
-        return taken > 0 ? static_cast<float>(scattered / taken) : 1.0f;
     }
 
     // ---- Places --------------------------------------------------------------------------------
