@@ -2,7 +2,7 @@
 // The light at single places of a cloud, behind it and beside it, on the device.
 //
 //     sun.relight(recorder, particles, count, *box);
-//     diffuse.solve(recorder, sun.volume(), *box);                       // if wanted
+//     diffuse.solve(recorder, sun);                                      // if wanted
 //     record_light_at(recorder, device.limits(), sun, &diffuse, places, n, found);
 //
 // For each place a vec4 is found, without units:
