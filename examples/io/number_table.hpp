@@ -1,8 +1,8 @@
 #pragma once
 // number_table: the rows of a text table whose columns hold numbers, one after another.
 //
-// The first line is the header; columns are found by name in any letter case, in any order among any
-// others. Fields are separated by commas, semicolons or tabs, whichever the header has most of;
+// The first line is the header; columns are found by name in any letter case, in any order among
+// any others. Fields are separated by commas, semicolons or tabs, whichever the header has most of;
 // spaces around them are left out, they may stand in double quotes, lines end in LF or CRLF. A byte
 // order mark, empty lines and lines that begin with # are skipped.
 
