@@ -1050,6 +1050,33 @@ TEST(cloud_billboards, frames_allocate_nothing) {
     EXPECT_EQ(allocations[1], 0u);
 }
 
+/// What the lighting uses and nobody gave is a mistake of the caller's, not another volume.
+TEST(cloud_billboards_death, miss_what_the_lighting_uses) {
+    testing::GTEST_FLAG(death_test_style) = "threadsafe"; // the device has threads
+    using B = cpu::device;
+    B device;
+    stage<B> on(device);
+    const auto lit = clear_volume(device);
+    on.set(scene_at({0, 0, 100}, {0, 0, 0}));
+    const auto crowd = thick_crowd(3, 2);
+    const auto values = make_buffer<B, float>(device, std::vector<float>(2, 0.5f));
+    const auto plain = plain_light(grid_at({-2, -2, -2}));
+    cloud_light_sources<B> light{plain, &lit, nullptr, nullptr, {}};
+    (void)on.draw(crowd, light);
+    light.lighting.sky = 1;
+    EXPECT_DEBUG_DEATH((void)on.draw(crowd, light), "light.sky");
+    light.sky = &lit;
+    (void)on.draw(crowd, light);
+    light.lighting.diffuse = 0.1f;
+    EXPECT_DEBUG_DEATH((void)on.draw(crowd, light), "light.diffuse");
+    light.diffuse = &lit;
+    (void)on.draw(crowd, light);
+    light.lighting.by_particle = 1;
+    EXPECT_DEBUG_DEATH((void)on.draw(crowd, light), "light.by_particle");
+    light.by_particle = view<B>(*values);
+    (void)on.draw(crowd, light);
+}
+
 TEST(cloud_billboards, know_of_the_light_what_the_volume_has) {
     const auto phase = phase_function::henyey_greenstein(0.5);
     attenuation_options options;

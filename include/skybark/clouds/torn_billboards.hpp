@@ -19,7 +19,8 @@
 namespace skybark::clouds {
 
 /// Particles where they are, and where they lie at rest: the noise's places. The same view where
-/// nothing drifts.
+/// nothing drifts. The picture does not depend on the order of both lists, unless two of the same
+/// place, radius, depth and albedo come from different places.
 template <backend B>
 struct drawn_particles {
     buffer_view<B> moved; ///< cloud_particle
