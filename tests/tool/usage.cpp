@@ -47,7 +47,7 @@ TEST_F(tool_usage, helps) {
         {"--backend", "--device", "--size",    "--seed",       "--stats",  "--quiet",     "--sun",
          "--volume",  "--method", "--padding", "--polygons",   "--route",  "--profile",   "--light",
          "--octaves", "--phase",  "--sigmas",  "--extinction", "--albedo", "--particles", "--half",
-         "--probe",   "--camera", "--look-at", "--list",       "-o"}));
+         "--probe",   "--camera", "--look-at", "--list",       "--grid",   "-o"}));
     EXPECT_TRUE(has(skybark({"gather", "--help"}).out, {"--backend",    "--device",
                                                         "--size",       "--seed",
                                                         "--stats",      "--quiet",
