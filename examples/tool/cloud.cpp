@@ -134,10 +134,11 @@ thin_particles thin_of(std::span<const cloud_particle> particles, const clouds::
     return found;
 }
 
-/// A note of particles that the volume may miss, where they are more than a hundredth of the cloud.
+/// A note of particles that the volume may miss, where they are more than a hundredth of a cloud
+/// that came from a file.
 void note_thin(const cloud_job& job) {
     constexpr double little = 0.01;
-    if (job.common.quiet || job.thin.share <= little) {
+    if (job.common.quiet || job.options.source != cloud_source::table || job.thin.share <= little) {
         return;
     }
     constexpr double most_voxels = 65536; // of --volume

@@ -329,11 +329,11 @@ class cloud_maker {
             return failure(sky.error());
         }
         // The product with the paper's profile is drawn by the paper's S = a τ P I as well.
-        const bool as_document = options_.light == cloud_light::product &&
-                                 options_.attenuation.profile == clouds::attenuation_profile::step;
+        const bool paper_form = options_.light == cloud_light::product &&
+                                options_.attenuation.profile == clouds::attenuation_profile::step;
         clouds::cloud_light_sources<B> light;
         light.lighting =
-            clouds::single_scattering(sun->volume.options(), sun->box, options_.phase, as_document);
+            clouds::single_scattering(sun->volume.options(), sun->box, options_.phase, paper_form);
         if (options_.light == cloud_light::octaves) {
             clouds::add_octaves(light.lighting, options_.octaves);
         }

@@ -2,6 +2,7 @@
 // cloud_billboards: draws the particles of a cloud, back to front, lit for each fragment.
 //
 //     auto puffs = cloud_billboards<B>::create(device, most_particles);
+//     // sun: an attenuation_volume of light_of(phase)
 //     cloud_lighting lighting = single_scattering(sun.options(), box, phase);
 //     run(device, [&](auto& recorder) {
 //         sun.relight(recorder, particles, count, box);

@@ -25,12 +25,11 @@ class cloud_density {
 
     /// Appends the drawing of `density`, a volume of floats that lies in the box `where` (which
     /// passes check_density_box), over `color`. Rays end at what `depth` (depth32f, of the same
-    /// size) shows.
+    /// size) shows. Of the lighting, by_particle, torn and forward_point are of particles alone.
     void record(typename B::recorder& to, const typename B::volume& density,
                 const density_box& where, const buffer_view<B>& scene,
                 const cloud_light_sources<B>& light, const typename B::image& color,
                 const typename B::image& depth) const {
-        assert(light.sun != nullptr);
         assert(check_density_box(where) && "a density grid that cannot be drawn");
         to.upload(view<B>(*lighting_), bytes_of_one(light.lighting));
         const volume_description what = density.description();
@@ -43,8 +42,8 @@ class cloud_density {
         rays.step = std::max(0.5f * std::min({side.x, side.y, side.z}),
                              std::sqrt(size.x * size.x + size.y * size.y + size.z * size.z) / 511);
         volume_bindings<B, kernels::lit_grid> volumes;
-        volumes.read = {light.sun, light.sky != nullptr ? light.sky : light.sun,
-                        light.diffuse != nullptr ? light.diffuse : light.sun, &density};
+        const auto lit_by = detail::light_volumes(light);
+        volumes.read = {lit_by[0], lit_by[1], lit_by[2], &density};
         draw_geometry<B> screen;
         screen.count = 3;
         to.draw(rays, {scene, view<B>(*lighting_)},
