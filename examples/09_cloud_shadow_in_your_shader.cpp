@@ -42,8 +42,7 @@ T value_of(skybark::result<T> made) {
     return std::move(*made);
 }
 
-// ---- The program's shaders
-// -----------------------------------------------------------------------
+// ---- The program's shaders ----------------------------------------------------------------------
 
 constexpr std::string_view version = "#version 450\n";
 
@@ -73,8 +72,7 @@ void main() {
 }
 )glsl";
 
-// ---- The program's OpenGL
-// ------------------------------------------------------------------------
+// ---- The program's OpenGL -----------------------------------------------------------------------
 
 /// OpenGL's functions, by their names.
 struct functions {
@@ -198,8 +196,7 @@ class painter {
     GLuint no_vertices_ = 0;
 };
 
-// ---- The check
-// -----------------------------------------------------------------------------------
+// ---- The check ----------------------------------------------------------------------------------
 
 /// Where the middle of what is taken out of the light is thrown to: each particle takes out as
 /// much as its optical depth times its area.

@@ -25,12 +25,15 @@ MEASUREMENTS = {
     "meadow_opengl_gpu": ("meadow_opengl_gpu.json", [meadow("opengl", "1920x1080", 4, 30)]),
     "meadow_vulkan_gpu": ("meadow_vulkan_gpu.json", [meadow("vulkan", "1920x1080", 4, 30)]),
     "relight": ("relight.json", [
-        benchmark("clouds/(floor|relight/(harris|impulse_scan|impulse_scan_erf)_cpu/"
-                  "(9382|32914|60134)_)", 3),
+        benchmark("clouds/(floor|fit|relight/(harris|impulse_scan|impulse_scan_erf)_cpu/"
+                  "(9382|32914|60134|1000000)_)", 3),
         # Minutes: rectangles in software.
         benchmark("clouds/relight/(shadow_polygons_stage_(cpu|vulkan)|shadow_polygons_opengl|"
-                  "shadow_polygons_tiles_copied_degenerate_opengl|"
+                  "shadow_polygons_(tiles_copied_degenerate|tiles_drawn_degenerate|layers_compact)_opengl|"
                   "(harris|impulse_scan|impulse_scan_erf)_(vulkan|opengl))/60134_256", 1)]),
+    "cloud_frame": ("cloud_frame.json", [
+        benchmark("clouds/frame/.*_cpu/", 3),
+        benchmark("clouds/frame/.*_(vulkan|opengl)/20000_", 1)]),
     "relight_curves": ("relight_curves.json", [benchmark("clouds/(by_|floor)", 3)]),
     "bundle": ("bundle.json", [
         benchmark("^gather/bundle/(resolve_.*|embree_(shared|random)|peel_opengl)/", 3)]),

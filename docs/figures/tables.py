@@ -111,7 +111,8 @@ def meadow():
 
 # ---- Clouds --------------------------------------------------------------------------------------
 
-COUNTS, SIDES = [9382, 32914, 60134], [128, 256, 384]
+COUNTS, SIDES = [9382, 32914, 60134, 1000000], [128, 256, 384]
+PAPERS_MOST = 60134  # particles in its table 1
 
 
 def relight():
@@ -124,13 +125,15 @@ def relight():
               *(" / ".join(figure(ms("harris", n, side)) for side in SIDES) for n in COUNTS), "", ""]]
     for method, words in (("impulse_scan", "step"), ("impulse_scan_erf", "erf")):
         for side in SIDES:
-            last = ms(method, COUNTS[-1], side)
-            of_floor = rows.get(f"clouds/relight/{method}_cpu/{COUNTS[-1]}_{side}", "floor")
+            last = ms(method, PAPERS_MOST, side)
+            of_floor = rows.get(f"clouds/relight/{method}_cpu/{PAPERS_MOST}_{side}", "floor")
             lines.append([f"`impulse_scan`, {words}, {side}³",
                           *(bold(ms(method, n, side)) for n in COUNTS), figure(of_floor),
-                          figure(ratio(ms("harris", COUNTS[-1], side), last))])
+                          figure(ratio(ms("harris", PAPERS_MOST, side), last))])
+    lines.append(["fitting the box, on the host, beside it",
+                  *(figure(rows.get(f"clouds/fit/{n}")) for n in COUNTS), "", ""])
     head = ["`cpu`, ms", *(f"{n:,} particles" if n == COUNTS[0] else f"{n:,}" for n in COUNTS),
-            "× the floor", "× as fast as Harris"]
+            f"{PAPERS_MOST:,}: × the floor", "× as fast as Harris"]
     return table(head, lines) + measured(rows.context, "relight")
 
 
@@ -141,11 +144,16 @@ def relight_backends():
         return rows.get(f"clouds/relight/{method}_{backend}/60134_256")
 
     order = ["cpu", "vulkan", "opengl"]
-    tiles = ms("shadow_polygons_tiles_copied_degenerate", "opengl")
     polygons = [figure(ms("shadow_polygons_stage", "cpu")), figure(ms("shadow_polygons_stage", "vulkan")),
-                f"{figure(ms('shadow_polygons', 'opengl'))} (a list), {figure(tiles)} (its tiles, copied)"]
+                f"{figure(ms('shadow_polygons', 'opengl'))} (a list)"]
+
+    def drawn_way(words, method):
+        return [words, "", "", figure(ms(f"shadow_polygons_{method}", "opengl"))]
     lines = [["Harris: one after another, read back", *(figure(ms("harris", b)) for b in order)],
              ["`shadow_polygons`: the paper's rectangles", *polygons],
+             drawn_way("… into tiles, padded in the vertex stage, copied", "tiles_copied_degenerate"),
+             drawn_way("… the same, the slices drawn from the tiles", "tiles_drawn_degenerate"),
+             drawn_way("… into layers, by the geometry stage (its future work)", "layers_compact"),
              ["`impulse_scan`, step", *(bold(ms("impulse_scan", b)) for b in order)],
              ["`impulse_scan`, erf (the default)", *(bold(ms("impulse_scan_erf", b)) for b in order)],
              ["step: × as fast as Harris",
@@ -153,6 +161,21 @@ def relight_backends():
              ["writing the volume once", *(figure(rows.get(f"clouds/floor/{b}/256")) for b in order)]]
     head = ["60,134 particles, 256³, ms", *(on(rows.context, b) for b in order)]
     return table(head, lines) + measured(rows.context, "relight")
+
+
+def cloud_frame():
+    rows = Rows("cloud_frame.json")
+    parts = [("relight", "the sun's volume (`impulse_scan`, erf)"),
+             ("scatter", "what is scattered more than once (`multiple_scattering`)"),
+             ("draw", "`cloud_billboards`, 1280 × 720"), ("torn", "`torn_billboards`, the same"),
+             ("all", "**all: two volumes, scattering, `cloud_billboards`**")]
+    order = [("cpu", "60134_256"), ("cpu", "20000_128"), ("vulkan", "20000_128"),
+             ("opengl", "20000_128")]
+    lines = [[words, *(figure(rows.get(f"clouds/frame/{part}_{backend}/{size}"))
+                       for backend, size in order)] for part, words in parts]
+    head = ["a cumulus, ms", "`cpu`: 60,134 particles, 256³",
+            *(f"{on(rows.context, b)}: 20,000, 128³" for b, _ in order[1:])]
+    return table(head, lines) + measured(rows.context, "cloud_frame")
 
 
 # ---- Gathered light ------------------------------------------------------------------------------
@@ -257,6 +280,7 @@ def headline():
     clouds, rays = Rows("relight.json"), Rows("bundle.json")
     trees, steps, wood = Rows("generate.json"), Rows("sway.json"), Rows("branch.json")
     relit = clouds.get("clouds/relight/impulse_scan_cpu/60134_256")
+    through = clouds.get("clouds/relight/impulse_scan_erf_cpu/60134_256")
     harris = clouds.get("clouds/relight/harris_cpu/60134_256")
     park = rays.get("gather/bundle/resolve_cpu/park_1048576", "items_per_second", 1e-6)
     embree = rays.get("gather/bundle/embree_shared/park_1048576", "items_per_second", 1e-6)
@@ -265,8 +289,11 @@ def headline():
     swayed = steps.get("trees/sway/one_core/15000")
     rings = wood.get("trees/branch/cpu/1000000", "triangles", 1e-6)
     floor = wood.get("trees/branch/cpu/1000000", "floor", 100)
-    lines = [["a cloud's light, made anew: 60,134 particles, 256³ voxels", f"{figure(relit)} ms",
+    lines = [["a cloud's light, made anew: 60,134 particles, 256³ voxels, the paper's profile",
+              f"{figure(relit)} ms",
               f"{figure(ratio(harris, relit))} × as fast as Harris and Lastra's pass", "relight"],
+             ["the same, integrated through each particle (the default)", f"{figure(through)} ms",
+              f"{figure(ratio(harris, through))} ×", "relight"],
              ["rays in bundles: a million points in a park of 202,560 triangles",
               f"{figure(park)} million rays a second",
               f"{ratio(park, embree):.2f} × Embree's, whose hierarchy is built beforehand", "bundle"],
@@ -290,5 +317,5 @@ def commands():
             "```"]
 
 
-TABLES = {of.__name__: of for of in (headline, meadow, relight, relight_backends, bundle, gather_error,
-                                     generate, drawn, sway, branch, commands)}
+TABLES = {of.__name__: of for of in (headline, meadow, relight, relight_backends, cloud_frame, bundle,
+                                     gather_error, generate, drawn, sway, branch, commands)}

@@ -139,8 +139,7 @@ screen_vulkan::~screen_vulkan() {
     }
 }
 
-// ---- the device
-// -----------------------------------------------------------------------------------
+// ---- the device ---------------------------------------------------------------------------------
 
 result<void> screen_vulkan::make_instance() {
     const char* const validation = "VK_LAYER_KHRONOS_validation";
@@ -343,8 +342,7 @@ result<std::uint32_t> screen_vulkan::memory_type(std::uint32_t among,
                                          "viewer needs.");
 }
 
-// ---- the panel
-// ------------------------------------------------------------------------------------
+// ---- the panel ----------------------------------------------------------------------------------
 
 result<void> screen_vulkan::start_panel() {
     VkAttachmentDescription color{};
@@ -414,8 +412,7 @@ void screen_vulkan::begin_panel() {
     }
 }
 
-// ---- command buffers
-// ------------------------------------------------------------------------------
+// ---- command buffers ----------------------------------------------------------------------------
 
 result<void> screen_vulkan::begin_commands(std::size_t marks) {
     auto info = make<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
@@ -490,8 +487,7 @@ void screen_vulkan::to_layout(VkImage image, VkImageLayout from, VkImageLayout t
     vkCmdPipelineBarrier2(commands_, &all);
 }
 
-// ---- images
-// ---------------------------------------------------------------------------------------
+// ---- images -------------------------------------------------------------------------------------
 
 void screen_vulkan::destroy_image() {
     vkDestroyFramebuffer(device_, frame_, nullptr);
@@ -625,8 +621,7 @@ result<void> screen_vulkan::make_swapchain(glm::uvec2 size) {
     return {};
 }
 
-// ---- a frame
-// --------------------------------------------------------------------------------------
+// ---- a frame ------------------------------------------------------------------------------------
 
 void screen_vulkan::draw_all(const vulkan::image& picture) {
     const image_description what = picture.description();

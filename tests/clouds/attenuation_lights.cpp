@@ -178,8 +178,7 @@ TEST(attenuation_cuts, into_any_number_change_nothing) {
     }
 }
 
-// ---- The box
-// -------------------------------------------------------------------------------------
+// ---- The box ------------------------------------------------------------------------------------
 
 /// How far a cloud reaches along an axis of a box, m.
 double extent_along(std::span<const cloud_particle> particles, const light_grid& grid, int axis) {

@@ -514,8 +514,7 @@ TEST_F(tool_clouds, stats_say_what_there_was) {
     EXPECT_TRUE(stats["bytes"].contains("up"));
 }
 
-// ---- What is wrong
-// ---------------------------------------------------------------------------------
+// ---- What is wrong ------------------------------------------------------------------------------
 
 TEST_F(tool_clouds, says_what_is_wrong_with_particles) {
     const std::pair<const char*, words> all[] = {

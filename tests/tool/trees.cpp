@@ -99,8 +99,7 @@ apart compare(const std::vector<vector3>& a, const std::vector<vector3>& b) {
 
 } // namespace
 
-// ---- Closed surfaces
-// -----------------------------------------------------------------------------
+// ---- Closed surfaces ----------------------------------------------------------------------------
 
 class tool_trees_on : public tool_trees, public testing::WithParamInterface<const char*> {};
 
@@ -139,8 +138,7 @@ TEST_F(tool_trees, bark_adds_triangles_and_leaves_it_closed) {
     EXPECT_EQ(mesh.indices.size(), rough["counts"]["indices"].get<std::size_t>());
 }
 
-// ---- Leaves
-// --------------------------------------------------------------------------------------
+// ---- Leaves -------------------------------------------------------------------------------------
 
 TEST_P(tool_trees_on, leaves_are_a_material_of_their_own) {
     words arguments{"tree",    sample(), "-o",        in_folder("a.glb"), "--leaves",
@@ -202,8 +200,7 @@ TEST_F(tool_trees, leaves_of_an_obj_have_their_material) {
     }
 }
 
-// ---- Frames
-// --------------------------------------------------------------------------------------
+// ---- Frames -------------------------------------------------------------------------------------
 
 namespace {
 
@@ -386,8 +383,7 @@ TEST_F(tool_trees, failing_frames_leave_no_file_behind) {
     }
 }
 
-// ---- Pictures
-// ------------------------------------------------------------------------------------
+// ---- Pictures -----------------------------------------------------------------------------------
 
 // Leaves and twigs are thinner than a pixel here, and three samples a pixel in each direction find
 // them on one side of an edge or the other.
@@ -428,8 +424,7 @@ TEST_F(tool_trees, less_detail_looks_nearly_the_same) {
     EXPECT_GT(found.mean, 0);
 }
 
-// ---- Maps
-// ----------------------------------------------------------------------------------------
+// ---- Maps ---------------------------------------------------------------------------------------
 
 TEST_F(tool_trees, maps_change_the_picture) {
     // A leaf that is red all over.
@@ -479,8 +474,7 @@ TEST_F(tool_trees, maps_that_are_no_images_are_named) {
     }
 }
 
-// ---- Seeds
-// ---------------------------------------------------------------------------------------
+// ---- Seeds --------------------------------------------------------------------------------------
 
 TEST_F(tool_trees, runs_are_the_same_and_seeds_are_winds) {
     const std::string input = sample();

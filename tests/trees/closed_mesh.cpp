@@ -415,8 +415,7 @@ TEST(closed_mesh, refuses_what_it_cannot_make) {
     EXPECT_TRUE(meshed(device, empty).indices.empty());
 }
 
-// ---- The check itself
-// ----------------------------------------------------------------------------
+// ---- The check itself ---------------------------------------------------------------------------
 
 namespace {
 

@@ -321,8 +321,7 @@ std::vector<joint_motion> random_motions(std::size_t n, std::uint32_t seed, doub
 
 } // namespace
 
-// ---- What bends
-// ----------------------------------------------------------------------------------
+// ---- What bends ---------------------------------------------------------------------------------
 
 TEST(sway, cantilever_is_off_by_half_the_square_of_the_segments) {
     for (const sway_model model : {sway_model::quasi_static, sway_model::dynamic}) {
@@ -422,8 +421,7 @@ TEST(sway, the_papers_forces_do_not_converge) {
     }
 }
 
-// ---- What swings
-// ---------------------------------------------------------------------------------
+// ---- What swings --------------------------------------------------------------------------------
 
 TEST(sway, first_and_second_frequency_of_a_beam) {
     const beam b;
@@ -536,8 +534,7 @@ TEST(sway, drag_damps_without_a_limit_of_the_step) {
     EXPECT_LE(std::abs(s.motions()[0].rate.z), 1e-3);
 }
 
-// ---- Energy
-// --------------------------------------------------------------------------------------
+// ---- Energy -------------------------------------------------------------------------------------
 
 TEST(sway, free_vibration_keeps_its_energy) {
     beam b;
@@ -643,8 +640,7 @@ TEST(sway, nothing_makes_it_nan) {
     }
 }
 
-// ---- State
-// ---------------------------------------------------------------------------------------
+// ---- State --------------------------------------------------------------------------------------
 
 TEST(sway, rest_is_exactly_rest) {
     const support::test_tree tree = support::scanned_tree();
@@ -838,8 +834,7 @@ TEST(sway, says_what_is_wrong_with_its_input) {
     EXPECT_FALSE(cpu_sway::create(narrow, tree.skeleton));
 }
 
-// ---- Backends
-// ------------------------------------------------------------------------------------
+// ---- Backends -----------------------------------------------------------------------------------
 
 namespace {
 

@@ -266,8 +266,7 @@ TEST(swaying_tree, vulkan_agrees_with_the_cpu_slow) {
     check_agreement("vulkan", full_aspen(), 600);
 }
 
-// ---- At rest
-// -------------------------------------------------------------------------------------
+// ---- At rest ------------------------------------------------------------------------------------
 
 namespace {
 
@@ -312,8 +311,7 @@ TEST_P(swaying_tree_on, is_its_parts_at_rest) {
     });
 }
 
-// ---- What a frame costs
-// --------------------------------------------------------------------------
+// ---- What a frame costs -------------------------------------------------------------------------
 
 namespace {
 
@@ -430,8 +428,7 @@ TEST(swaying_tree, frames_make_no_objects) {
     check_objects<trees::detailed_branch_mesh<null>>(aspen, false);
 }
 
-// ---- Inputs
-// --------------------------------------------------------------------------------------
+// ---- Inputs -------------------------------------------------------------------------------------
 
 namespace {
 
@@ -598,8 +595,7 @@ TEST(swaying_tree, no_time_and_time_that_goes_back_move_nothing) {
     EXPECT_TRUE(on.misuse.empty()) << on.misuse.front();
 }
 
-// ---- Leaves in the wind, and wood that carries them
-// ----------------------------------------------
+// ---- Leaves in the wind, and wood that carries them ---------------------------------------------
 
 namespace {
 
@@ -708,8 +704,7 @@ TEST(swaying_tree, species_in_leaf_sway_as_trees_do) {
     }
 }
 
-// ---- Several trees
-// -------------------------------------------------------------------------------
+// ---- Several trees ------------------------------------------------------------------------------
 
 namespace {
 
@@ -802,8 +797,7 @@ TEST(swaying_tree, trees_of_one_skeleton_sway_on_their_own) {
     EXPECT_GT(moved, 0.01f);
 }
 
-// ---- Bark
-// ----------------------------------------------------------------------------------------
+// ---- Bark ---------------------------------------------------------------------------------------
 
 // Made for a view from afar, then looked at from near by: too little room once, and never again.
 TEST(swaying_tree, bark_gets_the_room_that_a_nearer_view_needs) {
@@ -837,8 +831,7 @@ TEST(swaying_tree, bark_gets_the_room_that_a_nearer_view_needs) {
     EXPECT_EQ(value_of(far.tree.triangles(device)), all);
 }
 
-// ---- In a gale
-// -----------------------------------------------------------------------------------
+// ---- In a gale ----------------------------------------------------------------------------------
 
 namespace {
 
