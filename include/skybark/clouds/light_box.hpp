@@ -143,9 +143,9 @@ inline constexpr float largest_cloud = 1e15f;
 /// have places: doubles leave 2^-12 of a voxel at this distance.
 [[nodiscard]] inline result<void> check_distance(glm::dvec3 low, glm::dvec3 high,
                                                  glm::uvec3 voxels) {
-    const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high));
+    const glm::dvec3 distances = glm::max(glm::abs(low), glm::abs(high));
     const glm::dvec3 side = (high - low) / (glm::dvec3(voxels) - 3.0);
-    const double farthest = std::max({far.x, far.y, far.z});
+    const double farthest = std::max({distances.x, distances.y, distances.z});
     const double finest = std::min({side.x, side.y, side.z});
     if (!(farthest <= 0x1p40 * finest)) {
         return fail(error_code::bad_input,
