@@ -57,9 +57,7 @@ std::vector<float> lit(B& device, const std::vector<T>& values, const light_box&
     return found;
 }
 
-light_box box_for(glm::vec3 sun, glm::uvec3 voxels) {
-    return *fit_light_box(where, sun, voxels);
-}
+light_box box_for(glm::vec3 sun, glm::uvec3 voxels) { return *fit_light_box(where, sun, voxels); }
 
 class grid_attenuation : public testing::TestWithParam<const char*> {};
 

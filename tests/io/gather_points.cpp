@@ -1,5 +1,7 @@
 // Points that ask for light, and what is written about them.
 
+#include "support/temporary_name.hpp"
+
 #include <io/gather_points.hpp>
 
 #include <array>
@@ -14,9 +16,7 @@ using namespace skybark;
 
 namespace {
 
-std::string temporary(const std::string& name) {
-    return (std::filesystem::temp_directory_path() / ("skybark_gather_points_" + name)).string();
-}
+std::string temporary(const std::string& name) { return support::temporary_name(name).string(); }
 
 std::string bytes_of(const std::string& path) {
     std::ifstream file(path, std::ios::binary);

@@ -1,3 +1,5 @@
+#include "support/temporary_name.hpp"
+
 #include <io/probe_points.hpp>
 
 #include <filesystem>
@@ -12,7 +14,7 @@ namespace {
 
 struct temporary_path {
     explicit temporary_path(const std::string& name)
-        : path((std::filesystem::temp_directory_path() / ("skybark_probe_" + name)).string()) {}
+        : path(support::temporary_name(name).string()) {}
     temporary_path(const temporary_path&) = delete;
     temporary_path& operator=(const temporary_path&) = delete;
     ~temporary_path() { std::filesystem::remove(path); }

@@ -1,3 +1,5 @@
+#include "support/temporary_name.hpp"
+
 #include <io/read_qsm.hpp>
 
 #include "support/sample_qsm.hpp"
@@ -32,7 +34,7 @@ std::string complaint(std::string_view text) {
 
 struct temporary_file {
     explicit temporary_file(const std::string& name, const std::string& text = {})
-        : path(std::filesystem::temp_directory_path() / ("skybark_read_qsm_" + name)) {
+        : path(support::temporary_name(name)) {
         std::ofstream(path, std::ios::binary) << text;
     }
     temporary_file(const temporary_file&) = delete;

@@ -1,3 +1,5 @@
+#include "support/temporary_name.hpp"
+
 #include <io/read_skeleton_json.hpp>
 
 #include <io/read_tree.hpp>
@@ -154,7 +156,7 @@ TEST(read_tree, chooses_by_extension_or_name) {
     const auto missing = io::read_tree("no_such_file.JSON", 1);
     ASSERT_FALSE(missing);
     EXPECT_TRUE(has(missing.error().message, "can't be opened"));
-    const auto path = std::filesystem::temp_directory_path() / "skybark_read_tree.json";
+    const auto path = support::temporary_name("tree.json");
     std::ofstream(path) << "{\"skybark_tree\":1,\"segments\":[" << root << "]}";
     const auto file = io::read_tree(path.string(), 1);
     std::filesystem::remove(path);

@@ -1,5 +1,7 @@
 // EXR files; where OpenEXR isn't there, a sentence.
 
+#include "support/temporary_name.hpp"
+
 #include <io/exr.hpp>
 
 #include <array>
@@ -14,9 +16,7 @@ using namespace skybark;
 
 namespace {
 
-std::string temporary(const std::string& name) {
-    return (std::filesystem::temp_directory_path() / ("skybark_exr_" + name)).string();
-}
+std::string temporary(const std::string& name) { return support::temporary_name(name).string(); }
 
 std::string bytes_of(const std::string& path) {
     std::ifstream file(path, std::ios::binary);

@@ -1,6 +1,8 @@
 // Scenes as glTF, read back by tinygltf and played in double precision by the formulas of the glTF
 // specification (3.7.3.3 skins, appendix C animation), which share nothing with the writer.
 
+#include "support/temporary_name.hpp"
+
 #include <io/branch_carriers.hpp>
 #include <io/write_glb.hpp>
 
@@ -22,9 +24,7 @@ namespace {
 using matrix = std::array<std::array<double, 4>, 4>; ///< rows
 using vector3 = std::array<double, 3>;
 
-std::string temporary(const std::string& name) {
-    return (std::filesystem::temp_directory_path() / ("skybark_glb_scene_" + name)).string();
-}
+std::string temporary(const std::string& name) { return support::temporary_name(name).string(); }
 
 /// Writes and reads; empty where either fails.
 tinygltf::Model round_trip(const io::glb_scene& scene) {

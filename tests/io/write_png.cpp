@@ -1,3 +1,5 @@
+#include "support/temporary_name.hpp"
+
 #include <io/write_png.hpp>
 
 #include <cstdlib>
@@ -32,8 +34,7 @@ picture test_picture(std::uint32_t width, std::uint32_t height) {
 }
 
 std::string temporary(const char* name) {
-    return (std::filesystem::temp_directory_path() / ("skybark_write_png_" + std::string(name)))
-        .string();
+    return support::temporary_name(std::string(name)).string();
 }
 
 } // namespace

@@ -1,6 +1,8 @@
 // VDB files: what OpenVDB wrote is read, what we write OpenVDB reads, and nothing that is broken
 // brings anything down.
 
+#include "support/temporary_name.hpp"
+
 #include <io/vdb.hpp>
 
 #include <algorithm>
@@ -24,7 +26,7 @@ namespace {
 
 struct temporary_path {
     explicit temporary_path(const std::string& name)
-        : path((std::filesystem::temp_directory_path() / ("skybark_vdb_" + name)).string()) {}
+        : path(support::temporary_name(name).string()) {}
     temporary_path(const temporary_path&) = delete;
     temporary_path& operator=(const temporary_path&) = delete;
     ~temporary_path() { std::filesystem::remove(path); }
