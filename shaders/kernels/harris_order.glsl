@@ -9,6 +9,6 @@ layout(std430, binding = 1) writeonly buffer keys_buffer { uint keys[]; };
 layout(std430, binding = 2) writeonly buffer numbers_buffer { uint numbers[]; };
 
 void kernel_map(uint i) {
-    keys[i] = falling_key(cells_of(grid, particles[2u * i].xyz).y);
+    keys[i] = falling_key(holdable_cells_of(grid, particles[2u * i].xyz).y);
     numbers[i] = i;
 }

@@ -15,9 +15,9 @@ void kernel_map(uint pixel) {
     vec4 a = particles[2u * i];
     vec4 b = particles[2u * i + 1u];
     cloud_particle p = cloud_particle(a.xyz, a.w, b.x, b.y, b.z, b.w);
-    vec3 cells = cells_of(grid, p.position);
-    int x = first_pixel(cells.x, p.radius / grid.voxel.x) + int(pixel % side);
-    int z = first_pixel(cells.z, p.radius / grid.voxel.z) + int(pixel / side);
+    vec3 cells = holdable_cells_of(grid, p.position);
+    int x = first_pixel(cells.x, holdable(p.radius / grid.voxel.x)) + int(pixel % side);
+    int z = first_pixel(cells.z, holdable(p.radius / grid.voxel.z)) + int(pixel / side);
     if (x < 0 || z < 0 || x >= int(columns) || z >= int(rows)) {
         return;
     }

@@ -11,7 +11,7 @@ voxel_slab kernel_slab(uint i, uint s) {
     placed at = place(p);
     int z = first_slice(at) + int(s);
     float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-    float reach = sqrt(max(p.radius * p.radius - dz * dz, 0.0)) / grid.voxel.x;
+    float reach = holdable(sqrt(max(p.radius * p.radius - dz * dz, 0.0)) / grid.voxel.x);
     int top = top_row(at.centre.y, at.radius.y);
     int bottom = profile == 0u ? top : min(top, bottom_row(at.centre.y, at.radius.y));
     return voxel_slab(ivec2(int(floor(at.centre.x - reach)), bottom),

@@ -95,6 +95,18 @@ vec3 place_of(light_grid grid, vec3 cells)
         grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 
+// A length or a coordinate in voxels as an int can hold it, of particles that nobody has checked:
+// what is no number lies a million voxels below, outside of every grid.
+float holdable(float cells)
+{
+    return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+    vec3 cells = cells_of(grid, place);
+    return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
+
 // A number of a particle that nobody has checked: 0 for what is below it or no number.
 float bounded(float x, float largest)
 {

@@ -25,18 +25,18 @@ struct program<kernels::harris_splat> : plain_program<kernels::harris_splat> {
             return;
         }
         const cloud_particle& p = particles[order[k.k]];
-        const glm::vec3 cells = shared::cells_of(k.grid, p.position);
+        const glm::vec3 cells = shared::holdable_cells_of(k.grid, p.position);
         const light_grid& grid = k.grid;
-        const int top = first(cells.z, p.radius / grid.voxel.z);
-        const int left = first(cells.x, p.radius / grid.voxel.x);
+        const int top = first(cells.z, shared::holdable(p.radius / grid.voxel.z));
+        const int left = first(cells.x, shared::holdable(p.radius / grid.voxel.x));
         const int bottom = std::min(top + static_cast<int>(k.side), static_cast<int>(k.rows));
         const int right = std::min(left + static_cast<int>(k.side), static_cast<int>(k.columns));
         std::array<float, most_columns + 8> depths;
         for (int z = std::max(top, 0); z < bottom; ++z) {
             const float dz = (static_cast<float>(z) + 0.5f - cells.z) * grid.voxel.z;
             // Beyond this nothing is left; a pixel more is harmless.
-            const float half =
-                std::sqrt(std::max(p.radius * p.radius - dz * dz, 0.0f)) / grid.voxel.x;
+            const float half = shared::holdable(
+                std::sqrt(std::max(p.radius * p.radius - dz * dz, 0.0f)) / grid.voxel.x);
             const int begin = std::max({left, 0, static_cast<int>(cells.x - half) - 1});
             const int end = std::min(right, static_cast<int>(cells.x + half) + 2);
             find_depths(k, p, cells.x, dz, begin, end, depths.data());

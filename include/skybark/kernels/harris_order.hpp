@@ -16,7 +16,7 @@ struct harris_order {
 
     void map(std::uint32_t i, std::span<const cloud_particle> particles,
              std::span<std::uint32_t> keys, std::span<std::uint32_t> numbers) const {
-        keys[i] = shared::falling_key(shared::cells_of(grid, particles[i].position).y);
+        keys[i] = shared::falling_key(shared::holdable_cells_of(grid, particles[i].position).y);
         numbers[i] = i;
     }
 };

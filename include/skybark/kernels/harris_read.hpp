@@ -21,7 +21,7 @@ struct harris_read {
     void map(std::uint32_t, std::span<const cloud_particle> particles,
              std::span<const std::uint32_t> order, std::span<const float> light,
              std::span<float> lights) const {
-        const glm::vec3 cells = shared::cells_of(grid, particles[order[k]].position);
+        const glm::vec3 cells = shared::holdable_cells_of(grid, particles[order[k]].position);
         const auto x = static_cast<std::uint32_t>(
             glm::clamp(glm::floor(cells.x), 0.0f, static_cast<float>(columns - 1)));
         const auto z = static_cast<std::uint32_t>(

@@ -27,11 +27,11 @@ struct harris_splat {
              std::span<const std::uint32_t> order, std::span<const float> before,
              std::span<float> after) const {
         const cloud_particle& p = particles[order[k]];
-        const glm::vec3 cells = shared::cells_of(grid, p.position);
-        const std::int32_t x =
-            first(cells.x, p.radius / grid.voxel.x) + static_cast<std::int32_t>(pixel % side);
-        const std::int32_t z =
-            first(cells.z, p.radius / grid.voxel.z) + static_cast<std::int32_t>(pixel / side);
+        const glm::vec3 cells = shared::holdable_cells_of(grid, p.position);
+        const std::int32_t x = first(cells.x, shared::holdable(p.radius / grid.voxel.x)) +
+                               static_cast<std::int32_t>(pixel % side);
+        const std::int32_t z = first(cells.z, shared::holdable(p.radius / grid.voxel.z)) +
+                               static_cast<std::int32_t>(pixel / side);
         if (x < 0 || z < 0 || x >= static_cast<std::int32_t>(columns) ||
             z >= static_cast<std::int32_t>(rows)) {
             return;

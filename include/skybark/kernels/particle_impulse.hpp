@@ -29,8 +29,8 @@ struct particle_impulse {
         const particle_shade::placed at = shade.place(p);
         const std::int32_t z = shade.first_slice(at) + static_cast<std::int32_t>(s);
         const float dz = (static_cast<float>(z) + 0.5f - at.centre.z) * shade.grid.voxel.z;
-        const float reach =
-            std::sqrt(std::max(p.radius * p.radius - dz * dz, 0.0f)) / shade.grid.voxel.x;
+        const float reach = shared::holdable(
+            std::sqrt(std::max(p.radius * p.radius - dz * dz, 0.0f)) / shade.grid.voxel.x);
         const int top = shared::top_row(at.centre.y, at.radius.y);
         const int bottom =
             shade.profile == 0 ? top : std::min(top, shared::bottom_row(at.centre.y, at.radius.y));

@@ -26,9 +26,10 @@ struct particle_shade {
         glm::vec3 radius;
     };
     [[nodiscard]] placed place(const cloud_particle& p) const {
-        return {
-            shared::cells_of(grid, p.position),
-            glm::vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z)};
+        return {shared::holdable_cells_of(grid, p.position),
+                glm::vec3(shared::holdable(p.radius / grid.voxel.x),
+                          shared::holdable(p.radius / grid.voxel.y),
+                          shared::holdable(p.radius / grid.voxel.z))};
     }
     /// The first layer whose middle lies in the particle, and how many there are (n_p).
     [[nodiscard]] std::int32_t first_slice(const placed& p) const {

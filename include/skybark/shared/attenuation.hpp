@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 de8c5c3532bf0b84a59e2ac20e66dbd1940a97324277367ed61be2af7cd1d68b
+// sha256 cfeb3c21d7a55333a8b7bfe95d96cbd685c7db42d5a16fd15066e3722b9e9077
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -101,6 +101,18 @@ inline vec3 place_of(light_grid grid, vec3 cells)
         grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
         grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
         grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
+}
+
+// A length or a coordinate in voxels as an int can hold it, of particles that nobody has checked:
+// what is no number lies a million voxels below, outside of every grid.
+inline float holdable(float cells)
+{
+    return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+inline vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+    vec3 cells = cells_of(grid, place);
+    return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
 }
 
 // A number of a particle that nobody has checked: 0 for what is below it or no number.

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 bf78bbeacb0836f55d7646f3954d46120e8bfd369c12e10944877954cbac20d2
+// sha256 b99bfdb9a8cac9da34dd96026405138a1f002f27349c945130c3ca3d88ea4f4d
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>
@@ -240,6 +240,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -420,7 +429,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 11048};
+)glsl", 11297};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -653,6 +662,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -832,7 +850,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 11063};
+)glsl", 11312};
 };
 
 } // namespace skybark::opengl

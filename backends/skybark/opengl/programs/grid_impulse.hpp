@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 107e846189c4118b3bf140c74dfdbc8cef2fd813594283fbc828992e5cb2d7e8
+// sha256 5cf177ae3ac58a8804a98566b15e9e4098c99f9642c5b803a0ab303efd60f2a3
 #pragma once
 
 #include <skybark/kernels/grid_impulse.hpp>
@@ -242,6 +242,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -305,7 +314,7 @@ if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
 kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
 }
-)glsl", 7579};
+)glsl", 7828};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 78b57675313b097126646ddb3e2492b54983b3ac61aa14c2f1bf57aacf7c9480
+// sha256 0f54be810d7d0549f6a1d164ad6ead447a95de5924b9dc0fb5d2e0cb7393f9a3
 #pragma once
 
 #include <skybark/kernels/harris_order.hpp>
@@ -240,6 +240,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -297,7 +306,7 @@ layout(std430, binding = 0) readonly buffer particles_buffer { vec4 particles[];
 layout(std430, binding = 1) writeonly buffer keys_buffer { uint keys[]; };
 layout(std430, binding = 2) writeonly buffer numbers_buffer { uint numbers[]; };
 void kernel_map(uint i) {
-keys[i] = falling_key(cells_of(grid, particles[2u * i].xyz).y);
+keys[i] = falling_key(holdable_cells_of(grid, particles[2u * i].xyz).y);
 numbers[i] = i;
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
@@ -312,7 +321,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 7668};
+)glsl", 7926};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -545,6 +554,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -602,7 +620,7 @@ layout(std430, binding = 0) readonly buffer particles_buffer { vec4 particles[];
 layout(std430, binding = 1) writeonly buffer keys_buffer { uint keys[]; };
 layout(std430, binding = 2) writeonly buffer numbers_buffer { uint numbers[]; };
 void kernel_map(uint i) {
-keys[i] = falling_key(cells_of(grid, particles[2u * i].xyz).y);
+keys[i] = falling_key(holdable_cells_of(grid, particles[2u * i].xyz).y);
 numbers[i] = i;
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
@@ -616,7 +634,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 7683};
+)glsl", 7941};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 6d29592b1e6ad1a076da97652ad95fb03a9940b600971424cf544fef6fbb16cd
+// sha256 aea0dcc5a27138d3160df9327994561811a2cb288f14a2191f195606fae40d8d
 #pragma once
 
 #include <skybark/kernels/harris_read.hpp>
@@ -240,6 +240,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -289,7 +298,7 @@ layout(std430, binding = 1) readonly buffer order_buffer { uint order[]; };
 layout(std430, binding = 2) readonly buffer light_buffer { float light[]; };
 layout(std430, binding = 3) writeonly buffer lights_buffer { float lights[]; };
 void kernel_map(uint i) {
-vec3 cells = cells_of(grid, particles[2u * order[k]].xyz);
+vec3 cells = holdable_cells_of(grid, particles[2u * order[k]].xyz);
 uint x = uint(clamp(floor(cells.x), 0.0, float(columns - 1u)));
 uint z = uint(clamp(floor(cells.z), 0.0, float(rows - 1u)));
 lights[to] = light[z * columns + x];
@@ -306,7 +315,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 7732};
+)glsl", 7990};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -539,6 +548,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -588,7 +606,7 @@ layout(std430, binding = 1) readonly buffer order_buffer { uint order[]; };
 layout(std430, binding = 2) readonly buffer light_buffer { float light[]; };
 layout(std430, binding = 3) writeonly buffer lights_buffer { float lights[]; };
 void kernel_map(uint i) {
-vec3 cells = cells_of(grid, particles[2u * order[k]].xyz);
+vec3 cells = holdable_cells_of(grid, particles[2u * order[k]].xyz);
 uint x = uint(clamp(floor(cells.x), 0.0, float(columns - 1u)));
 uint z = uint(clamp(floor(cells.z), 0.0, float(rows - 1u)));
 lights[to] = light[z * columns + x];
@@ -604,7 +622,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 7747};
+)glsl", 8005};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 30f3e3af2bfaff4f014fc4efa7475beddb9c81c5ec9da4fbf87af14aaf8162db
+// sha256 7c23bff274598e72c659555ea5c2e2de605b77ebd8cf8a74cbc045be01c0f54d
 #pragma once
 
 #include <skybark/kernels/harris_splat.hpp>
@@ -240,6 +240,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -294,9 +303,9 @@ uint i = order[k];
 vec4 a = particles[2u * i];
 vec4 b = particles[2u * i + 1u];
 cloud_particle p = cloud_particle(a.xyz, a.w, b.x, b.y, b.z, b.w);
-vec3 cells = cells_of(grid, p.position);
-int x = first_pixel(cells.x, p.radius / grid.voxel.x) + int(pixel % side);
-int z = first_pixel(cells.z, p.radius / grid.voxel.z) + int(pixel / side);
+vec3 cells = holdable_cells_of(grid, p.position);
+int x = first_pixel(cells.x, holdable(p.radius / grid.voxel.x)) + int(pixel % side);
+int z = first_pixel(cells.z, holdable(p.radius / grid.voxel.z)) + int(pixel / side);
 if (x < 0 || z < 0 || x >= int(columns) || z >= int(rows)) {
 return;
 }
@@ -320,7 +329,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 8386};
+)glsl", 8664};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -553,6 +562,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -607,9 +625,9 @@ uint i = order[k];
 vec4 a = particles[2u * i];
 vec4 b = particles[2u * i + 1u];
 cloud_particle p = cloud_particle(a.xyz, a.w, b.x, b.y, b.z, b.w);
-vec3 cells = cells_of(grid, p.position);
-int x = first_pixel(cells.x, p.radius / grid.voxel.x) + int(pixel % side);
-int z = first_pixel(cells.z, p.radius / grid.voxel.z) + int(pixel / side);
+vec3 cells = holdable_cells_of(grid, p.position);
+int x = first_pixel(cells.x, holdable(p.radius / grid.voxel.x)) + int(pixel % side);
+int z = first_pixel(cells.z, holdable(p.radius / grid.voxel.z)) + int(pixel / side);
 if (x < 0 || z < 0 || x >= int(columns) || z >= int(rows)) {
 return;
 }
@@ -632,7 +650,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 8401};
+)glsl", 8679};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 40a4d9baba81081c1c68e1026706cb1641f3d72e291a5780b94e6a3876a3e1c4
+// sha256 bdf98b297719c45aeab878fd872486c06094eea17fd3e6b14c315e2e7ec59856
 #pragma once
 
 #include <skybark/kernels/light_at_points.hpp>
@@ -241,6 +241,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -369,7 +378,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 10185};
+)glsl", 10434};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -603,6 +612,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -730,7 +748,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 10200};
+)glsl", 10449};
 };
 
 } // namespace skybark::opengl

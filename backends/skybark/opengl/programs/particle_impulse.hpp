@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 cbde219991037015ec4e56cf24084f9b5e352369d28cddbf4a8ef366c347baf6
+// sha256 80dd17758fb159b8670fea596ea32ef43794cd2586a7cdc9d277516f95a0f1b0
 #pragma once
 
 #include <skybark/kernels/particle_impulse.hpp>
@@ -244,6 +244,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -299,8 +308,9 @@ vec3 centre;
 vec3 radius;
 };
 placed place(cloud_particle p) {
-return placed(cells_of(grid, p.position),
-vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z));
+return placed(holdable_cells_of(grid, p.position),
+vec3(holdable(p.radius / grid.voxel.x), holdable(p.radius / grid.voxel.y),
+holdable(p.radius / grid.voxel.z)));
 }
 int first_slice(placed p) { return int(ceil(p.centre.z - p.radius.z - 0.5)); }
 uint slice_count(placed p) {
@@ -322,7 +332,7 @@ cloud_particle p = particle_at(i);
 placed at = place(p);
 int z = first_slice(at) + int(s);
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-float reach = sqrt(max(p.radius * p.radius - dz * dz, 0.0)) / grid.voxel.x;
+float reach = holdable(sqrt(max(p.radius * p.radius - dz * dz, 0.0)) / grid.voxel.x);
 int top = top_row(at.centre.y, at.radius.y);
 int bottom = profile == 0u ? top : min(top, bottom_row(at.centre.y, at.radius.y));
 return voxel_slab(ivec2(int(floor(at.centre.x - reach)), bottom),
@@ -392,7 +402,7 @@ for (uint s = first + slot; s < last; s += gl_WorkGroupSize.x / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 11010};
+)glsl", 11308};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -621,6 +631,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -676,8 +695,9 @@ vec3 centre;
 vec3 radius;
 };
 placed place(cloud_particle p) {
-return placed(cells_of(grid, p.position),
-vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z));
+return placed(holdable_cells_of(grid, p.position),
+vec3(holdable(p.radius / grid.voxel.x), holdable(p.radius / grid.voxel.y),
+holdable(p.radius / grid.voxel.z)));
 }
 int first_slice(placed p) { return int(ceil(p.centre.z - p.radius.z - 0.5)); }
 uint slice_count(placed p) {
@@ -699,7 +719,7 @@ cloud_particle p = particle_at(i);
 placed at = place(p);
 int z = first_slice(at) + int(s);
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-float reach = sqrt(max(p.radius * p.radius - dz * dz, 0.0)) / grid.voxel.x;
+float reach = holdable(sqrt(max(p.radius * p.radius - dz * dz, 0.0)) / grid.voxel.x);
 int top = top_row(at.centre.y, at.radius.y);
 int bottom = profile == 0u ? top : min(top, bottom_row(at.centre.y, at.radius.y));
 return voxel_slab(ivec2(int(floor(at.centre.x - reach)), bottom),
@@ -758,7 +778,7 @@ slab = skybark_visible(i, s);
 skybark_cell = ivec2(i, slab.slice);
 gl_Position = skybark_corner(slab, corners[uint(gl_VertexID) - rectangle * 6u]);
 }
-)glsl", 10480};
+)glsl", 10778};
     static constexpr std::string_view slabs_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -987,6 +1007,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -1042,8 +1071,9 @@ vec3 centre;
 vec3 radius;
 };
 placed place(cloud_particle p) {
-return placed(cells_of(grid, p.position),
-vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z));
+return placed(holdable_cells_of(grid, p.position),
+vec3(holdable(p.radius / grid.voxel.x), holdable(p.radius / grid.voxel.y),
+holdable(p.radius / grid.voxel.z)));
 }
 int first_slice(placed p) { return int(ceil(p.centre.z - p.radius.z - 0.5)); }
 uint slice_count(placed p) {
@@ -1065,7 +1095,7 @@ cloud_particle p = particle_at(i);
 placed at = place(p);
 int z = first_slice(at) + int(s);
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-float reach = sqrt(max(p.radius * p.radius - dz * dz, 0.0)) / grid.voxel.x;
+float reach = holdable(sqrt(max(p.radius * p.radius - dz * dz, 0.0)) / grid.voxel.x);
 int top = top_row(at.centre.y, at.radius.y);
 int bottom = profile == 0u ? top : min(top, bottom_row(at.centre.y, at.radius.y));
 return voxel_slab(ivec2(int(floor(at.centre.x - reach)), bottom),
@@ -1140,7 +1170,7 @@ skybark_emit(i, slab);
 }
 }
 }
-)glsl", 10972};
+)glsl", 11270};
     static constexpr std::string_view slabs_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1369,6 +1399,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -1424,8 +1463,9 @@ vec3 centre;
 vec3 radius;
 };
 placed place(cloud_particle p) {
-return placed(cells_of(grid, p.position),
-vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z));
+return placed(holdable_cells_of(grid, p.position),
+vec3(holdable(p.radius / grid.voxel.x), holdable(p.radius / grid.voxel.y),
+holdable(p.radius / grid.voxel.z)));
 }
 int first_slice(placed p) { return int(ceil(p.centre.z - p.radius.z - 0.5)); }
 uint slice_count(placed p) {
@@ -1447,7 +1487,7 @@ cloud_particle p = particle_at(i);
 placed at = place(p);
 int z = first_slice(at) + int(s);
 float dz = (float(z) + 0.5 - at.centre.z) * grid.voxel.z;
-float reach = sqrt(max(p.radius * p.radius - dz * dz, 0.0)) / grid.voxel.x;
+float reach = holdable(sqrt(max(p.radius * p.radius - dz * dz, 0.0)) / grid.voxel.x);
 int top = top_row(at.centre.y, at.radius.y);
 int bottom = profile == 0u ? top : min(top, bottom_row(at.centre.y, at.radius.y));
 return voxel_slab(ivec2(int(floor(at.centre.x - reach)), bottom),
@@ -1499,7 +1539,7 @@ int low = amount & 255;
 int carry = low >> 7;
 skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));
 }
-)glsl", 10324};
+)glsl", 10622};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 9d8b23754796c7642994720bb769ef1c1e78b3c5a5678819b614d6c044abed8f
+// sha256 7f3fd7d01cce25906a5557b316b41091adfb00554621b7172b77b107e028ba75
 #pragma once
 
 #include <skybark/kernels/puff_light.hpp>
@@ -358,6 +358,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -692,7 +701,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 21422};
+)glsl", 21671};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -1043,6 +1052,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -1376,7 +1394,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 21437};
+)glsl", 21686};
 };
 
 } // namespace skybark::opengl

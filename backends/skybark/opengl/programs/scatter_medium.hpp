@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1da41784a72913429c6c8dea254c465eb3a60adeca24f16b4b581ad26fc22192
+// sha256 145fc2731c5c158dedc13589581c2d71d676ef98ae25be84943f4d04a812d3f2
 #pragma once
 
 #include <skybark/kernels/scatter_medium.hpp>
@@ -242,6 +242,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -327,7 +336,7 @@ if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
 kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
 }
-)glsl", 8370};
+)glsl", 8619};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 86b93f5b22d542b8d52000ea7136b782efcdf0815bc7091115f650f3235f4b6b
+// sha256 b55aa2ec065d577b0114324abef09b11db04b74057abe5135a346cb559e58b56
 #pragma once
 
 #include <skybark/kernels/shadow_polygon.hpp>
@@ -244,6 +244,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -299,8 +308,9 @@ vec3 centre;
 vec3 radius;
 };
 placed place(cloud_particle p) {
-return placed(cells_of(grid, p.position),
-vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z));
+return placed(holdable_cells_of(grid, p.position),
+vec3(holdable(p.radius / grid.voxel.x), holdable(p.radius / grid.voxel.y),
+holdable(p.radius / grid.voxel.z)));
 }
 int first_slice(placed p) { return int(ceil(p.centre.z - p.radius.z - 0.5)); }
 uint slice_count(placed p) {
@@ -388,7 +398,7 @@ for (uint s = first + slot; s < last; s += gl_WorkGroupSize.x / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 10851};
+)glsl", 11139};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -617,6 +627,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -672,8 +691,9 @@ vec3 centre;
 vec3 radius;
 };
 placed place(cloud_particle p) {
-return placed(cells_of(grid, p.position),
-vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z));
+return placed(holdable_cells_of(grid, p.position),
+vec3(holdable(p.radius / grid.voxel.x), holdable(p.radius / grid.voxel.y),
+holdable(p.radius / grid.voxel.z)));
 }
 int first_slice(placed p) { return int(ceil(p.centre.z - p.radius.z - 0.5)); }
 uint slice_count(placed p) {
@@ -750,7 +770,7 @@ slab = skybark_visible(i, s);
 skybark_cell = ivec2(i, slab.slice);
 gl_Position = skybark_corner(slab, corners[uint(gl_VertexID) - rectangle * 6u]);
 }
-)glsl", 10321};
+)glsl", 10609};
     static constexpr std::string_view slabs_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -979,6 +999,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -1034,8 +1063,9 @@ vec3 centre;
 vec3 radius;
 };
 placed place(cloud_particle p) {
-return placed(cells_of(grid, p.position),
-vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z));
+return placed(holdable_cells_of(grid, p.position),
+vec3(holdable(p.radius / grid.voxel.x), holdable(p.radius / grid.voxel.y),
+holdable(p.radius / grid.voxel.z)));
 }
 int first_slice(placed p) { return int(ceil(p.centre.z - p.radius.z - 0.5)); }
 uint slice_count(placed p) {
@@ -1128,7 +1158,7 @@ skybark_emit(i, slab);
 }
 }
 }
-)glsl", 10813};
+)glsl", 11101};
     static constexpr std::string_view slabs_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1357,6 +1387,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -1412,8 +1451,9 @@ vec3 centre;
 vec3 radius;
 };
 placed place(cloud_particle p) {
-return placed(cells_of(grid, p.position),
-vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z));
+return placed(holdable_cells_of(grid, p.position),
+vec3(holdable(p.radius / grid.voxel.x), holdable(p.radius / grid.voxel.y),
+holdable(p.radius / grid.voxel.z)));
 }
 int first_slice(placed p) { return int(ceil(p.centre.z - p.radius.z - 0.5)); }
 uint slice_count(placed p) {
@@ -1483,7 +1523,7 @@ int low = amount & 255;
 int carry = low >> 7;
 skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));
 }
-)glsl", 10165};
+)glsl", 10453};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 73d853ae2be89ff3031de2f77562da0801d96973324e85e782f6571ad7ca1956
+// sha256 7679ed58ffb86b24a73ce6bcb3d22607eb305ba91518fb9eee67ec654f67e11e
 #pragma once
 
 #include <skybark/kernels/shadow_slab.hpp>
@@ -245,6 +245,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -300,8 +309,9 @@ vec3 centre;
 vec3 radius;
 };
 placed place(cloud_particle p) {
-return placed(cells_of(grid, p.position),
-vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z));
+return placed(holdable_cells_of(grid, p.position),
+vec3(holdable(p.radius / grid.voxel.x), holdable(p.radius / grid.voxel.y),
+holdable(p.radius / grid.voxel.z)));
 }
 int first_slice(placed p) { return int(ceil(p.centre.z - p.radius.z - 0.5)); }
 uint slice_count(placed p) {
@@ -395,7 +405,7 @@ for (; strip < last; ++strip) {
 skybark_run(skybark_header.x + element, strip, first, count);
 }
 }
-)glsl", 10822};
+)glsl", 11110};
     static constexpr std::string_view accumulate_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
@@ -631,6 +641,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -686,8 +705,9 @@ vec3 centre;
 vec3 radius;
 };
 placed place(cloud_particle p) {
-return placed(cells_of(grid, p.position),
-vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z));
+return placed(holdable_cells_of(grid, p.position),
+vec3(holdable(p.radius / grid.voxel.x), holdable(p.radius / grid.voxel.y),
+holdable(p.radius / grid.voxel.z)));
 }
 int first_slice(placed p) { return int(ceil(p.centre.z - p.radius.z - 0.5)); }
 uint slice_count(placed p) {
@@ -787,7 +807,7 @@ for (uint s = first + slot; s < last; s += gl_WorkGroupSize.x / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 11313};
+)glsl", 11601};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1017,6 +1037,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -1072,8 +1101,9 @@ vec3 centre;
 vec3 radius;
 };
 placed place(cloud_particle p) {
-return placed(cells_of(grid, p.position),
-vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z));
+return placed(holdable_cells_of(grid, p.position),
+vec3(holdable(p.radius / grid.voxel.x), holdable(p.radius / grid.voxel.y),
+holdable(p.radius / grid.voxel.z)));
 }
 int first_slice(placed p) { return int(ceil(p.centre.z - p.radius.z - 0.5)); }
 uint slice_count(placed p) {
@@ -1162,7 +1192,7 @@ slab = skybark_visible(i, s);
 skybark_cell = ivec2(i, slab.slice);
 gl_Position = skybark_corner(slab, corners[uint(gl_VertexID) - rectangle * 6u]);
 }
-)glsl", 10783};
+)glsl", 11071};
     static constexpr std::string_view slabs_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1392,6 +1422,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -1447,8 +1486,9 @@ vec3 centre;
 vec3 radius;
 };
 placed place(cloud_particle p) {
-return placed(cells_of(grid, p.position),
-vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z));
+return placed(holdable_cells_of(grid, p.position),
+vec3(holdable(p.radius / grid.voxel.x), holdable(p.radius / grid.voxel.y),
+holdable(p.radius / grid.voxel.z)));
 }
 int first_slice(placed p) { return int(ceil(p.centre.z - p.radius.z - 0.5)); }
 uint slice_count(placed p) {
@@ -1553,7 +1593,7 @@ skybark_emit(i, slab);
 }
 }
 }
-)glsl", 11275};
+)glsl", 11563};
     static constexpr std::string_view slabs_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1783,6 +1823,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -1838,8 +1887,9 @@ vec3 centre;
 vec3 radius;
 };
 placed place(cloud_particle p) {
-return placed(cells_of(grid, p.position),
-vec3(p.radius / grid.voxel.x, p.radius / grid.voxel.y, p.radius / grid.voxel.z));
+return placed(holdable_cells_of(grid, p.position),
+vec3(holdable(p.radius / grid.voxel.x), holdable(p.radius / grid.voxel.y),
+holdable(p.radius / grid.voxel.z)));
 }
 int first_slice(placed p) { return int(ceil(p.centre.z - p.radius.z - 0.5)); }
 uint slice_count(placed p) {
@@ -1921,7 +1971,7 @@ int low = amount & 255;
 int carry = low >> 7;
 skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));
 }
-)glsl", 10627};
+)glsl", 10915};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f6188f003590f011fa1765ae489b3d19315df93cf2b82a6763d817c8634a6979
+// sha256 455cefe1ca5f3836ed0062d9bb12720ac30ac6d8be837e094357beac871f5fb3
 #pragma once
 
 #include <skybark/kernels/torn_puff.hpp>
@@ -358,6 +358,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -682,7 +691,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 20793};
+)glsl", 21042};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1031,6 +1040,15 @@ grid.anchor.x + grid.row_x.x * x + grid.row_y.x * y + grid.row_z.x * z,
 grid.anchor.y + grid.row_x.y * x + grid.row_y.y * y + grid.row_z.y * z,
 grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
+float holdable(float cells)
+{
+return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+}
+vec3 holdable_cells_of(light_grid grid, vec3 place)
+{
+vec3 cells = cells_of(grid, place);
+return vec3(holdable(cells.x), holdable(cells.y), holdable(cells.z));
+}
 float bounded(float x, float largest)
 {
 return x > 0.0f ? min(x, largest) : 0.0f;
@@ -1359,7 +1377,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 20806};
+)glsl", 21055};
 };
 
 } // namespace skybark::opengl

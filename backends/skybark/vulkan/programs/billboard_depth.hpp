@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 70659213335cb35f24a1f1f13a98e10b9ad2d7b56a78c3cac1f943f708ee0c51
+// sha256 44592889e6521ac9757bc828c16cdeed09c175c0f67f525c929bccb935cd824d
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 a04ec4a0c691148ab2acb6bdf9571a224fd900e11ef5eecfe16348bb8c19fbac
+// sha256 a2f8b6e77f4b01fdc67f49e2e2a38e4070a26c97ead079f75233eba81cb6e16d
 #pragma once
 
 #include <skybark/kernels/clouded_ground.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5656a04ed516ee6be24ac68f3c1c498ba3267472f46d9f4c1d6589f95dee4959
+// sha256 b40cbe0c7a9b63783f3b0e3060364ea59a0b1a48c5e383998b4221097fe8459a
 #pragma once
 
 #include <skybark/kernels/grid_impulse.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 4d9727588112b6a9e4498aad6a331e1704dddef80d848312b3858f09963201b2
+// sha256 0e5099b565866d7d916e31f3808c03e14023d71a864c94d324887c72a63a1492
 #pragma once
 
 #include <skybark/kernels/light_at_points.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 130a714beefa424155857e6b78c69a9ce66e287505d14950c80a37de2ac123a8
+// sha256 44f9eb0c94c82140602ff285121ce9f7189e416e07c588ca802877f4403ee8c5
 #pragma once
 
 #include <skybark/kernels/lit_grid.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 54391673bff9df885c0580f119b0c2cab49c75053de15f5c5fcbaf198be0e2a3
+// sha256 8fdaed65ff5d772758f3914e21f44d88f7fc99b48f80fa7f77316c7710c9a269
 #pragma once
 
 #include <skybark/kernels/lit_puff.hpp>

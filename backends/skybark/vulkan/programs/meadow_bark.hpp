@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 45bbebcf7a74a6a6eb2fe31ad00c1c2cec7079e4450a704292215a5eae92cd29
+// sha256 fae9ca399058f704da2e797baee91736a615ee2e5f453e63984d3a58b73bc4d0
 #pragma once
 
 #include <skybark/kernels/meadow_bark.hpp>

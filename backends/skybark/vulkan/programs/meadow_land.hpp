@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 979b22c5e109f5f196f684bc92e6d43fbe79b247d258c006ebd0e4c91807be3d
+// sha256 635b8b7daabd35b373ad73fffafb0f49328907dc21421a28353f143480e2585f
 #pragma once
 
 #include <skybark/kernels/meadow_land.hpp>

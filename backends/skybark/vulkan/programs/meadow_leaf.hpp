@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f099aa75a3cd9d65e5af6903b2fec930520803e17faad990454da11c77380f36
+// sha256 efd8ca6dfd46edc826903ffdfa7f46980fa4289ed31950768e67c5c0b2c4cd0d
 #pragma once
 
 #include <skybark/kernels/meadow_leaf.hpp>

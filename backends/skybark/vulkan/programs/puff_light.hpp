@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0d06fff9f45322975521b750971792f470276d337519a5d7ebb1271c15f02afb
+// sha256 339b8f126d7aa4bae3d40dc73146d375e5840ea0a141dddfe95a38bca51a43bc
 #pragma once
 
 #include <skybark/kernels/puff_light.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f95c2e0a51350c9355f765cb600b817a432f90dd5ea16a38c28a3fe2aeaaa1e0
+// sha256 0c648e3893894901081846979e1ad32b3452e2e310c80e2bc42faf725114b2ee
 #pragma once
 
 #include <skybark/kernels/scatter_medium.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 29c4f2f43aff4197ba9b7241ab67c96850663031072a02357dc399b0d84d3e8c
+// sha256 a10dd22cb656f426715cdb2a0cbca6d01d3f34965338c04e0c54fff604d22471
 #pragma once
 
 #include <skybark/kernels/torn_puff.hpp>
