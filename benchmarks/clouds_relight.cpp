@@ -450,9 +450,7 @@ void add_backend(const std::string& name, bool drawn) {
     }
     for (const named_method& m : main_methods()) {
         add_table<B>(name, m, true);
-        if (m.name != "impulse_scan_erf") {
-            add_curves<B>(name, m);
-        }
+        add_curves<B>(name, m);
     }
     for (const named_method& m : other_methods(drawn)) {
         add_table<B>(name, m, false);

@@ -9,9 +9,9 @@ PANELS = [("particles", "particles (radius 3 % of the box, 128³ voxels)", 1),
           ("radius", "radius, % of the box (16,000 particles, 128³ voxels)", 0.1),
           ("volume", "voxels along a side (16,000 particles, radius 3 %)", 1)]
 COLORS = {"cpu": "#1b6ca8", "vulkan": "#b3261e", "opengl": "#3d7d2c"}
-DASHES = {"impulse_scan": "", "shadow_polygons": "7 4", "harris": "2 3", "floor": "1 6"}
-NAMES = {"cpu": "CPU", "vulkan": "Vulkan", "opengl": "OpenGL", "impulse_scan": "impulse_scan",
-         "shadow_polygons": "shadow_polygons", "harris": "Harris", "floor": "writing the volume once"}
+DASHES = {"impulse_scan": "", "impulse_scan_erf": "12 3", "shadow_polygons": "7 4", "harris": "2 3", "floor": "1 6"}
+NAMES = {"cpu": "CPU", "vulkan": "Vulkan", "opengl": "OpenGL", "impulse_scan": "impulse_scan, step",
+         "impulse_scan_erf": "erf", "shadow_polygons": "shadow_polygons", "harris": "Harris", "floor": "writing the volume once"}
 WIDTH, HEIGHT, LEFT, TOP, GAP, BOTTOM = 370, 400, 56, 44, 62, 104
 
 

@@ -2,7 +2,7 @@
 import re
 
 from measurements import MEASUREMENTS
-from rows import Rows, read_errors, read_stats
+from rows import DATA, Rows, read_errors, read_stats
 
 BACKENDS = ["cpu", "opengl", "vulkan"]
 
@@ -115,14 +115,23 @@ COUNTS, SIDES = [9382, 32914, 60134, 1000000], [128, 256, 384]
 PAPERS_MOST = 60134  # particles in its table 1
 
 
+def relight_sizes(rows, method, counts, key="ms", scale=1):
+    """For each count: the figures of all volumes."""
+    return [" / ".join(figure(rows.get(f"clouds/relight/{method}/{n}_{side}", key, scale)) for side in SIDES)
+            for n in counts]
+
+
 def relight():
     rows = Rows("relight.json")
 
     def ms(method, count, side, backend="cpu"):
         return rows.get(f"clouds/relight/{method}_{backend}/{count}_{side}")
 
-    lines = [["Harris, 128² / 256² / 384²",
-              *(" / ".join(figure(ms("harris", n, side)) for side in SIDES) for n in COUNTS), "", ""]]
+    lines = [["Harris, 128² / 256² / 384²", *relight_sizes(rows, "harris_cpu", COUNTS), "", ""],
+             ["… million particles a second, on one thread",
+              *relight_sizes(rows, "harris_cpu", COUNTS, "items_per_second", 1e-6), "", ""],
+             ["`shadow_polygons`, 128³ / 256³ / 384³",
+              *relight_sizes(rows, "shadow_polygons_stage_cpu", COUNTS), "", ""]]
     for method, words in (("impulse_scan", "step"), ("impulse_scan_erf", "erf")):
         for side in SIDES:
             last = ms(method, PAPERS_MOST, side)
@@ -144,38 +153,87 @@ def relight_backends():
         return rows.get(f"clouds/relight/{method}_{backend}/60134_256")
 
     order = ["cpu", "vulkan", "opengl"]
-    polygons = [figure(ms("shadow_polygons_stage", "cpu")), figure(ms("shadow_polygons_stage", "vulkan")),
-                f"{figure(ms('shadow_polygons', 'opengl'))} (a list)"]
+    harris = [ms("harris", b) for b in order]
+    rectangles = [ms("shadow_polygons_stage", "cpu"), ms("shadow_polygons_stage", "vulkan"),
+                  ms("shadow_polygons", "opengl")]
+    floors = [rows.get(f"clouds/floor/{b}/256") for b in order]
+
+    def times(words, method, others):
+        return [words, *(figure(ratio(other, ms(method, b))) for b, other in zip(order, others))]
 
     def drawn_way(words, method):
         return [words, "", "", figure(ms(f"shadow_polygons_{method}", "opengl"))]
-    lines = [["Harris: one after another, read back", *(figure(ms("harris", b)) for b in order)],
-             ["`shadow_polygons`: the paper's rectangles", *polygons],
+    lines = [["Harris: one after another, read back", *map(figure, harris)],
+             ["`shadow_polygons`: the paper's rectangles (OpenGL's out of a list)", *map(figure, rectangles)],
              drawn_way("… into tiles, padded in the vertex stage, copied", "tiles_copied_degenerate"),
              drawn_way("… the same, the slices drawn from the tiles", "tiles_drawn_degenerate"),
              drawn_way("… into layers, by the geometry stage (its future work)", "layers_compact"),
              ["`impulse_scan`, step", *(bold(ms("impulse_scan", b)) for b in order)],
              ["`impulse_scan`, erf (the default)", *(bold(ms("impulse_scan_erf", b)) for b in order)],
-             ["step: × as fast as Harris",
-              *(figure(ratio(ms("harris", b), ms("impulse_scan", b))) for b in order)],
-             ["writing the volume once", *(figure(rows.get(f"clouds/floor/{b}/256")) for b in order)]]
+             ["writing the volume once, the floor", *(figure(f) for f in floors)],
+             *(times(f"{profile}: × as fast as {against}", method, other)
+               for profile, method in (("step", "impulse_scan"), ("erf", "impulse_scan_erf"))
+               for against, other in (("Harris", harris), ("`shadow_polygons`", rectangles))),
+             ["step: × the floor",
+              *(figure(ratio(ms("impulse_scan", b), f)) for b, f in zip(order, floors))]]
     head = ["60,134 particles, 256³, ms", *(on(rows.context, b) for b in order)]
     return table(head, lines) + measured(rows.context, "relight")
 
 
-def cloud_frame():
-    rows = Rows("cloud_frame.json")
+def relight_software():
+    rows = Rows("relight.json")
+    lines = []
+    for backend, polygons in (("vulkan", "shadow_polygons_stage"), ("opengl", "shadow_polygons")):
+        for method, words in (("harris", "Harris"), (polygons, "`shadow_polygons`"),
+                              ("impulse_scan", "`impulse_scan`, step"),
+                              ("impulse_scan_erf", "`impulse_scan`, erf")):
+            lines.append([f"{on(rows.context, backend)}: {words}",
+                          *relight_sizes(rows, f"{method}_{backend}", COUNTS)])
+    head = ["128³ / 256³ / 384³, ms", *(f"{n:,} particles" if n == COUNTS[0] else f"{n:,}" for n in COUNTS)]
+    return table(head, lines) + measured(rows.context, "relight")
+
+
+def relight_gpu():
+    if not (DATA / "relight_gpu.json").exists():
+        return ["On a graphics card: not measured yet. `docs/figures/make --measure relight_gpu` fills this in where "
+                "there is one."]
+    rows = Rows("relight_gpu.json")
+
+    def ms(method):
+        return [figure(rows.get(f"clouds/relight/{method}_{b}/60134_{side}"))
+                for b in ("vulkan", "opengl") for side in (256, 384)]
+    lines = [["Harris: one after another, read back", *ms("harris")],
+             ["`shadow_polygons`", *ms("shadow_polygons_stage")],
+             ["… into tiles, padded in the vertex stage, copied", *ms("shadow_polygons_tiles_copied_degenerate")],
+             ["… into layers, by the geometry stage", *ms("shadow_polygons_layers_compact")],
+             ["`impulse_scan`, step", *ms("impulse_scan")],
+             ["`impulse_scan`, erf (the default)", *ms("impulse_scan_erf")],
+             ["writing the volume once", *(figure(rows.get(f"clouds/floor/{b}/{side}"))
+                                           for b in ("vulkan", "opengl") for side in (256, 384))]]
+    head = ["60,134 particles, ms", *(f"{on(rows.context, b)}, {side}³"
+                                      for b in ("vulkan", "opengl") for side in (256, 384))]
+    frames = frame_table(rows, [(b, size) for b in ("vulkan", "opengl") for size in FRAME_SIZES])
+    return table(head, lines) + [""] + frames + measured(rows.context, "relight_gpu")
+
+
+FRAME_SIZES = {"60134_256": "60,134 particles, 256³", "20000_128": "20,000, 128³"}
+
+
+def frame_table(rows, order):
+    """A column for each (backend, size)."""
     parts = [("relight", "the sun's volume (`impulse_scan`, erf)"),
              ("scatter", "what is scattered more than once (`multiple_scattering`)"),
              ("draw", "`cloud_billboards`, 1280 × 720"), ("torn", "`torn_billboards`, the same"),
              ("all", "**all: two volumes, scattering, `cloud_billboards`**")]
-    order = [("cpu", "60134_256"), ("cpu", "20000_128"), ("vulkan", "20000_128"),
-             ("opengl", "20000_128")]
     lines = [[words, *(figure(rows.get(f"clouds/frame/{part}_{backend}/{size}"))
                        for backend, size in order)] for part, words in parts]
-    head = ["a cumulus, ms", "`cpu`: 60,134 particles, 256³",
-            *(f"{on(rows.context, b)}: 20,000, 128³" for b, _ in order[1:])]
-    return table(head, lines) + measured(rows.context, "cloud_frame")
+    return table(["a cumulus, ms", *(f"{on(rows.context, b)}: {FRAME_SIZES[size]}" for b, size in order)], lines)
+
+
+def cloud_frame():
+    rows = Rows("cloud_frame.json")
+    order = [("cpu", "60134_256"), ("cpu", "20000_128"), ("vulkan", "20000_128"), ("opengl", "20000_128")]
+    return frame_table(rows, order) + measured(rows.context, "cloud_frame")
 
 
 # ---- Gathered light ------------------------------------------------------------------------------
@@ -317,5 +375,6 @@ def commands():
             "```"]
 
 
-TABLES = {of.__name__: of for of in (headline, meadow, relight, relight_backends, cloud_frame, bundle,
-                                     gather_error, generate, drawn, sway, branch, commands)}
+TABLES = {of.__name__: of for of in (headline, meadow, relight, relight_backends, relight_software,
+                                     relight_gpu, cloud_frame, bundle, gather_error, generate, drawn,
+                                     sway, branch, commands)}
