@@ -294,6 +294,89 @@ TEST(attenuation_accuracy, trilinear_transmittance) {
     }
 }
 
+// ---- A cloud as large as they are meant for -----------------------------------------------------
+
+/// Evenly in a ball of diameter 1 that they fill: 60,134, their radius 3 % of it, 7 deep on the
+/// mean.
+std::vector<cloud_particle> whole_cloud() {
+    constexpr float radius = 0.03f;
+    constexpr float reach = 0.5f - radius;
+    // A particle's depth over the plane comes to 2 π σ², the ball's disk to π reach².
+    constexpr float depth = 7 * reach * reach * 9 / (2 * radius * radius * 60134);
+    auto particles = ball(60134, radius, radius, depth, 16);
+    for (cloud_particle& p : particles) {
+        p.position *= reach;
+    }
+    return particles;
+}
+
+/// Of `side` voxels each way: how far from an edge, in radii, rounding decides on which side of it
+/// a voxel's middle lies.
+///
+/// Half an ulp of a coordinate, in voxels, is at most u = side · 2^-24, and of the way from the
+/// anchor, in the middle, half of that. A particle's coordinate is rounded as the difference to the
+/// anchor and as products (u/2 each), in two sums (u/2 each) and in the last one (u): 3 u. The rows
+/// are floats: their lengths are off by 2^-24 (u/2), and of each two the right angle by 2 · 2^-24
+/// (u for each of the others), 2.5 u. The y axis leans by 2^-24 over a shadow as long as the box:
+/// u. Along x and z together that makes √2 · 6.5 u, and along y the particle's top takes two more
+/// sums: 8.5 u; what is rounded as a part of the radius only is 15 times less.
+double decided_by_rounding(std::uint32_t side, double radius_in_voxels) {
+    return 10 * side * 0x1p-24 / radius_in_voxels;
+}
+
+void expect_exact_sums(std::uint32_t side, int places) {
+    cpu::device device;
+    const auto particles = whole_cloud();
+    const glm::uvec3 voxels(side);
+    const auto box = fit_light_box(particles, slanting, voxels);
+    ASSERT_TRUE(box);
+    const double near = decided_by_rounding(side, 0.03 / double(box->grid.voxel.x));
+    const glm::dvec3 sun = glm::normalize(glm::dvec3(slanting));
+    for (const auto profile : {attenuation_profile::step, attenuation_profile::erf}) {
+        const auto values = cold(device, particles, slanting, voxels,
+                                 with(attenuation_method::impulse_scan, profile));
+        ASSERT_FALSE(values.empty());
+        std::mt19937 random(17);
+        std::uniform_int_distribution<std::uint32_t> any(0, side - 1);
+        int compared = 0;
+        double worst = 0;
+        double deepest = 0;
+        for (int k = 0; k < places;) {
+            const glm::uvec3 cell(any(random), any(random), any(random));
+            const glm::dvec3 at = middle_of(box->grid, glm::dvec3(cell) + 0.5);
+            if (glm::dot(at, at) > 0.25) {
+                continue; // not in the cloud
+            }
+            ++k;
+            double tau = 0;
+            bool edge = false;
+            for (const cloud_particle& p : particles) {
+                const exact_depth one = depth_of(p, at, sun, profile, 3, near);
+                tau += one.tau;
+                edge = edge || one.on_edge;
+            }
+            if (!edge) {
+                ++compared;
+                const double found = double(values[index_of(voxels, cell.x, cell.y, cell.z)]);
+                worst = std::max(worst, std::abs(found - tau) / std::max(1.0, tau));
+                deepest = std::max(deepest, tau);
+            }
+        }
+        EXPECT_LE(worst, 1e-5); // the promise, of max(1, τ)
+        EXPECT_GT(compared, places * 9 / 10);
+        EXPECT_GT(deepest, 7);
+        std::printf("%s, %u^3: %d of %d, off by up to %.2e of max(1, depth), depths up to %.1f\n",
+                    profile == attenuation_profile::erf ? "erf" : "step", side, compared, places,
+                    worst, deepest);
+    }
+}
+
+TEST(attenuation_accuracy, of_sixty_thousand_particles) { expect_exact_sums(256, 300); }
+
+TEST(attenuation_accuracy, of_sixty_thousand_particles_in_384_slow) {
+    expect_exact_sums(384, 3000);
+}
+
 /// Mean T at places that turn with the cloud, for one rotation of both.
 double turned_light(cpu::device& device, std::span<const cloud_particle> still,
                     const std::array<glm::dvec3, 3>& axes, std::uint32_t side) {
