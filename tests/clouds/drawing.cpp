@@ -8,6 +8,7 @@
 #include <skybark/clouds/cloud_billboards.hpp>
 #include <skybark/clouds/cloud_density.hpp>
 #include <skybark/clouds/cumulus.hpp>
+#include <skybark/clouds/multiple_scattering.hpp>
 
 #include <algorithm>
 #include <array>
@@ -1025,6 +1026,89 @@ TEST_P(drawing, the_ground_lies_in_the_clouds_shadow) {
             }
         }
         EXPECT_LT(darkest, 0.15);
+    });
+}
+
+/// Everything that the picture of a cloud is made with, from the volumes to the image.
+template <volume_backend B>
+class whole_way {
+  public:
+    static constexpr std::uint32_t voxels = 24;
+
+    explicit whole_way(B& device)
+        : device_(&device), on_(device),
+          sun_(*attenuation_volume<B>::create(device, glm::uvec3(voxels), light_of(phase_))),
+          sky_(*attenuation_volume<B>::create(device, glm::uvec3(voxels), light_of(phase_))),
+          diffuse_(*multiple_scattering<B>::create(device, glm::uvec3(voxels), spread())) {}
+
+    /// The picture of a cloud and the sun as they are now.
+    std::vector<vec4> frame(std::span<const cloud_particle> cloud, vec3 to_sun) {
+        const auto sun_box = fit_light_box(cloud, to_sun, glm::uvec3(voxels));
+        const auto sky_box = fit_light_box(cloud, {0, 1, 0}, glm::uvec3(voxels));
+        EXPECT_TRUE(sun_box && sky_box);
+        const auto count = static_cast<std::uint32_t>(cloud.size());
+        const auto particles = make_buffer<B, cloud_particle>(*device_, cloud);
+        EXPECT_TRUE(particles);
+        cloud_lighting lighting = single_scattering(sun_.options(), *sun_box, phase_);
+        add_diffuse(lighting, diffuse_.grid(*sun_box));
+        add_sky(lighting, sky_.options(), *sky_box, phase_);
+        const vec3 eye(60, 35, 90);
+        on_.set(scene_at(eye, {0, 0, 0}, to_sun));
+        EXPECT_TRUE(run(*device_, [&](auto& r) {
+            sun_.relight(r, view<B>(*particles), count, *sun_box);
+            sky_.relight(r, view<B>(*particles), count, *sky_box);
+            diffuse_.solve(r, sun_);
+            on_.clear(r, vec4(0));
+            on_.puffs().record(r, view<B>(*particles), count, eye, on_.scene(),
+                               {lighting, &sun_.volume(), &sky_.volume(), &diffuse_.fluence(), {}},
+                               {&on_.color(), &on_.depth(), {}, {}});
+        }));
+        return on_.pixels();
+    }
+
+  private:
+    [[nodiscard]] multiple_scattering_options spread() const {
+        multiple_scattering_options options;
+        options.medium = medium_of(phase_, 1);
+        return options;
+    }
+
+    B* device_;
+    clouds::phase_function phase_ = clouds::phase_function::henyey_greenstein(0.8);
+    stage<B> on_;
+    attenuation_volume<B> sun_;
+    attenuation_volume<B> sky_;
+    multiple_scattering<B> diffuse_;
+};
+
+/// The sun once around, through the zenith, both level directions and the nadir: with what was
+/// there before the very picture that everything made anew gives.
+TEST_P(drawing, a_sun_swept_all_around_leaves_no_trace) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        const auto cloud = thick_crowd(21, 300);
+        const auto exactly_level = [](double v) {
+            return std::abs(v) < 1e-9 ? 0.0f : static_cast<float>(v);
+        };
+        whole_way<B> kept(device);
+        std::vector<vec4> first;
+        std::vector<vec4> before;
+        for (int degrees = 0; degrees <= 360; degrees += 30) {
+            const double angle = degrees * pi / 180;
+            const vec3 to_sun(exactly_level(std::cos(angle)), exactly_level(std::sin(angle)), 0);
+            const auto picture = kept.frame(cloud, to_sun);
+            EXPECT_TRUE(same_bytes(picture, whole_way<B>(device).frame(cloud, to_sun))) << degrees;
+            // There is a cloud, and the sun has moved on.
+            const vec4 middle = picture[side / 2 * side + side / 2];
+            EXPECT_GT(middle.a, 0.9f) << degrees;
+            EXPECT_GT(middle.g, 0.01f) << degrees;
+            EXPECT_FALSE(same_bytes(picture, before)) << degrees;
+            before = picture;
+            if (degrees == 0) {
+                first = picture;
+            }
+        }
+        EXPECT_TRUE(same_bytes(before, first)) << "once around";
     });
 }
 
