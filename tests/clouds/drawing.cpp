@@ -254,6 +254,110 @@ TEST_P(drawing, the_papers_form_scatters_in_proportion_to_the_depth) {
     });
 }
 
+/// 1/sr: (1 − w) Henyey–Greenstein + w Draine, as Draine 2003 has it in eq. 4, which is
+/// Henyey–Greenstein where alpha is 0.
+struct published_phase {
+    const char* name;
+    clouds::phase_function drawn;
+    double g_henyey_greenstein = 0;
+    double g_draine = 0;
+    double alpha = 0;
+    double weight = 0;
+
+    static double draine(double g, double a, double u) {
+        return (1 - g * g) / (1 + a * (1 + 2 * g * g) / 3) * (1 + a * u * u) /
+               (4 * pi * std::pow(1 + g * g - 2 * g * u, 1.5));
+    }
+    double operator()(double u) const {
+        return (1 - weight) * draine(g_henyey_greenstein, 0, u) +
+               weight * draine(g_draine, alpha, u);
+    }
+    [[nodiscard]] double least() const {
+        double found = 1e9;
+        for (int i = -1000; i <= 1000; ++i) {
+            found = std::min(found, (*this)(i / 1000.0));
+        }
+        return found;
+    }
+};
+std::vector<published_phase> published_phases() {
+    const double d = 10; // µm; Jendersie and d'Eon 2023, eq. 4 to 7
+    return {{"isotropic", clouds::phase_function::isotropic()},
+            {"Henyey-Greenstein", clouds::phase_function::henyey_greenstein(0.5), 0.5},
+            {"Draine", clouds::phase_function::draine(0.5, 5), 0, 0.5, 5, 1},
+            {"Mie", *clouds::phase_function::mie(d), std::exp(-0.0990567 / (d - 1.67154)),
+             std::exp(-2.20679 / (d + 3.91029) - 0.428934),
+             std::exp(3.62489 - 8.29288 / (d + 5.52825)),
+             std::exp(-0.599085 / (d - 0.641583) - 0.665888)}};
+}
+
+/// Light that is scattered once, over alpha, is the phase function, with the sun behind the eye, to
+/// its sides, before it and where a droplet's lobe is, for particles and for a grid.
+TEST_P(drawing, light_is_scattered_by_the_phase_function) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        stage<B> on(device);
+        const auto lit = clear_volume(device);
+        const vec3 eye(0, 0, 100);
+        cloud_particle p;
+        p.radius = 60;
+        p.optical_depth = 2;
+        const std::vector<float> ones(64, 1.0f);
+        const auto density = make_volume(device, {4, 4, 4}, ones);
+        density_box where;
+        where.low = vec3(-50);
+        where.high = vec3(50);
+        where.extinction = 0.02f;
+        auto rays = cloud_density<B>::create(device);
+        ASSERT_TRUE(rays);
+        for (const published_phase& phase : published_phases()) {
+            cloud_lighting lighting = plain_light(grid_at({-2, -2, -2}));
+            lighting.phase = phase.drawn.parameters();
+            const cloud_light_sources<B> light{lighting, &lit, nullptr, nullptr, {}};
+            double most = 0;
+            double least = 1e9;
+            for (const int degrees : {0, 2, 30, 60, 90, 135, 180}) { // between view and sun
+                const double angle = degrees * pi / 180;
+                const vec3 to_sun(dvec3(std::sin(angle), 0, -std::cos(angle)));
+                on.set(scene_at(eye, {0, 0, 0}, to_sun));
+                // A cosine rounds to 2e-7 and the ray to so many radians; the rest, with g once
+                // rounded, to 2e-5 of P.
+                const auto expect = [&](const std::vector<vec4>& pixels, double ray) {
+                    for (int y = 0; y < side; y += 2) {
+                        for (int x = 0; x < side; x += 2) {
+                            const double u =
+                                glm::dot(direction_of(x, y, eye, {0, 0, 0}), dvec3(to_sun));
+                            const double beside = 2e-7 + ray * std::sqrt(std::max(0.0, 1 - u * u));
+                            const double steepest =
+                                std::max(std::abs(phase(u + beside) - phase(u)),
+                                         std::abs(phase(u - beside) - phase(u)));
+                            const vec4 pixel = pixels[static_cast<std::size_t>(y * side + x)];
+                            ASSERT_GT(pixel.a, 0.01f);
+                            const double found = double{pixel.g} / (2 * pi * double{pixel.a});
+                            ASSERT_NEAR(found, phase(u), 2e-5 * phase(u) + steepest)
+                                << phase.name << ' ' << degrees << ": " << x << ' ' << y;
+                            most = std::max(most, found);
+                            least = std::min(least, found);
+                        }
+                    }
+                };
+                // Corners of billboards: half of 1/256 pixel.
+                expect(on.draw({&p, 1}, light), 3.2e-5);
+                ASSERT_TRUE(run(device, [&](auto& r) {
+                    on.clear(r, vec4(0));
+                    rays->record(r, density, where, on.scene(), light, on.color(), on.depth());
+                }));
+                // The inverse of a matrix with a near plane at 0.1 m, where the eye is at 100 m:
+                // 2^-24 of their quotient, twice.
+                expect(on.pixels(), 1.2e-4);
+            }
+            // The droplets' lobe, half a pixel beside its middle.
+            EXPECT_GT(most, 0.5 * phase(1)) << phase.name;
+            EXPECT_LT(least, 1.1 * phase.least()) << phase.name;
+        }
+    });
+}
+
 std::vector<cloud_particle> thick_crowd(std::uint32_t seed, int count) {
     std::mt19937 random(seed);
     const auto unit = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f; };
