@@ -1,7 +1,7 @@
 // The paper's ways of drawing an attenuation volume, told apart by what OpenGL is asked to do. All
 // routes have the same sums, so that one that took another's place would not show in them: here the
-// calls that make them are counted, with the triangles and the fragments that they come to
-// (Shimada et al. 2008, 3.3, 4.1 and 4.3).
+// calls that make them are counted, with the triangles and the fragments that they come to and the
+// blending that adds those up (Shimada et al. 2008, 3.3, 4.1 and 4.3).
 
 #include "caller.hpp"
 
@@ -21,6 +21,10 @@ struct drawn {
     bool into_layers = false; ///< of a 3-D texture, all at once
     GLuint triangles = 0;     ///< that reach the rasteriser, degenerate ones among them
     GLuint fragments = 0;
+    bool blends = false;
+    GLenum equation = 0; ///< of the first component, and its factors
+    GLenum source = 0;
+    GLenum destination = 0;
 };
 
 /// OpenGL's functions, with notes of what goes through them.
@@ -73,6 +77,11 @@ struct noted_calls {
         for (int i = 0; i < 2; ++i) {
             gl<PFNGLBEGINQUERYPROC>("glBeginQuery")(targets[i], queries[i]);
         }
+        // As the call finds it.
+        const bool blends = gl<PFNGLISENABLEDPROC>("glIsEnabled")(GL_BLEND) != 0;
+        const auto equation = static_cast<GLenum>(integer(GL_BLEND_EQUATION_RGB));
+        const auto source = static_cast<GLenum>(integer(GL_BLEND_SRC_RGB));
+        const auto destination = static_cast<GLenum>(integer(GL_BLEND_DST_RGB));
         draw();
         GLuint counts[2] = {};
         for (int i = 0; i < 2; ++i) {
@@ -81,7 +90,8 @@ struct noted_calls {
                                                                   &counts[i]);
         }
         gl<PFNGLDELETEQUERIESPROC>("glDeleteQueries")(2, queries);
-        draws.push_back({primitive, geometry_stage(), layered_target(), counts[0], counts[1]});
+        draws.push_back({primitive, geometry_stage(), layered_target(), counts[0], counts[1],
+                         blends, equation, source, destination});
     }
 
     static void APIENTRY draw_arrays(GLenum mode, GLint first, GLsizei count) {
@@ -255,6 +265,27 @@ TEST_P(drawn_routes, draws_as_many_triangles_as_the_paper_says) {
     EXPECT_EQ(rectangles.primitive,
               GLenum(rectangles.has_geometry_stage ? GL_POINTS : GL_TRIANGLES));
     EXPECT_EQ(rectangles.into_layers, !tiled());
+}
+
+// The paper has the blending unit add up a voxel's rectangles: whatever draws more than a tile's
+// one triangle adds to what is there, and a tile takes its place in the layer as it is.
+TEST_P(drawn_routes, adds_rectangles_up_by_blending) {
+    for (const polygon_source polygons : {polygon_source::stage, polygon_source::list}) {
+        (void)relight(polygons);
+        std::size_t additions = 0;
+        for (const drawn& each : noted_calls::draws) {
+            if (each.triangles > 1) {
+                EXPECT_TRUE(each.blends);
+                EXPECT_EQ(each.equation, GLenum(GL_FUNC_ADD));
+                EXPECT_EQ(each.source, GLenum(GL_ONE));
+                EXPECT_EQ(each.destination, GLenum(GL_ONE));
+                ++additions;
+            } else {
+                EXPECT_FALSE(each.blends);
+            }
+        }
+        EXPECT_EQ(additions, 1u);
+    }
 }
 
 // Of the list each triangle is an element with room for one rectangle, which every second one has.
