@@ -163,6 +163,7 @@ class cloud_maker {
         clouds::multiple_scattering_options options;
         options.medium = clouds::medium_of(
             options_.phase, job_.is_grid() ? options_.albedo : clouds::mean_albedo(job_.particles));
+        options.voxel = glm::vec3(lit.box.grid.voxel);
         auto made = clouds::multiple_scattering<B>::create(device_, lit.box.voxels, options);
         if (!made) {
             return made;

@@ -1,4 +1,5 @@
 // Device side of skybark::kernels::scatter_coarsen.
+#define KERNEL_PARAMETERS uint axes;
 #define KERNEL_VOLUMES 3
 #define KERNEL_TARGETS 3
 #include "../skeletons/parameters.glsl"
@@ -6,12 +7,13 @@
 
 void kernel_voxel(ivec3 at) {
     ivec3 size = scatter_size(0);
-    ivec3 first = first_child(at, size);
+    ivec3 halved = halved_axes(axes, size);
+    ivec3 first = first_child(at, halved);
     float extinction = 0.0;
     float scattered = 0.0;
     float beam = 0.0;
     for (int c = 0; c < 8; ++c) {
-        ivec3 child = child_of(first, c, size);
+        ivec3 child = child_of(first, c, halved);
         bool inside = within(child, size);
         extinction += inside ? scatter_load(0, child) : 0.0;
         scattered += inside ? scatter_load(1, child) : 0.0;

@@ -1,5 +1,5 @@
 // Device side of skybark::kernels::scatter_restrict.
-#define KERNEL_PARAMETERS vec4 sides; float absorption;
+#define KERNEL_PARAMETERS vec4 sides; float absorption; uint axes;
 #define KERNEL_VOLUMES 4
 #define KERNEL_TARGETS 1
 #include "../skeletons/parameters.glsl"
@@ -9,10 +9,11 @@
 
 void kernel_voxel(ivec3 at) {
     ivec3 size = scatter_size(0);
-    ivec3 first = first_child(at, size);
+    ivec3 halved = halved_axes(axes, size);
+    ivec3 first = first_child(at, halved);
     float left = 0.0;
     for (int c = 0; c < 8; ++c) {
-        ivec3 child = child_of(first, c, size);
+        ivec3 child = child_of(first, c, halved);
         if (within(child, size)) {
             scatter_balance sum = balance(child, false);
             left += sum.gain - sum.loss * scatter_load(0, child);

@@ -84,6 +84,13 @@ TEST(scatter, bits_are_the_plain_kernels) {
                               size);
         }
         expect_plain_bits(device, kernels::scatter_restrict{equation}, all, coarse);
+        for (std::uint32_t axes = 0; axes < kernels::all_axes; ++axes) {
+            const auto halved = glm::uvec3(kernels::halved_axes(axes, glm::ivec3(size)));
+            const glm::uvec3 partly = (size + halved) / (1u + halved);
+            const auto partly_phi = filled(device, partly, -1, 1, 8);
+            expect_plain_bits(device, kernels::scatter_prolong{0, axes}, {&phi, &partly_phi}, size);
+            expect_plain_bits(device, kernels::scatter_restrict{equation, axes}, all, partly);
+        }
         for (const double deepest : {3.0, 120.0}) {
             const auto attenuation = filled(device, size, -0.1, deepest, 7);
             expect_plain_bits(device, kernels::scatter_medium{2, 0.7f, 0.3f}, {&attenuation},

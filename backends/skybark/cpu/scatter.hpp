@@ -159,9 +159,9 @@ struct program<kernels::scatter_restrict> : plain_program<kernels::scatter_restr
     static void voxels(const kernels::scatter_restrict& kernel, glm::ivec3 first,
                        std::uint32_t count, const grids& grids) {
         const glm::ivec3 size = grids.size(0);
-        const glm::ivec3 child = kernels::first_child(first, size);
-        const bool whole =
-            size.x >= 4 && size.y > child.y + 1 && size.z > child.z + 1 && size.y > 1 && size.z > 1;
+        const glm::ivec3 child = 2 * first;
+        const bool whole = kernel.axes == kernels::all_axes && size.x >= 4 &&
+                           size.y > child.y + 1 && size.z > child.z + 1;
         if (!whole) {
             plain_program::voxels(kernel, first, count, grids);
             return;
@@ -200,6 +200,10 @@ struct program<kernels::scatter_prolong> : plain_program<kernels::scatter_prolon
     static void voxels(const kernels::scatter_prolong& kernel, glm::ivec3 first,
                        std::uint32_t count, const grids& grids) {
         using namespace lanes;
+        if (kernel.axes != kernels::all_axes) {
+            plain_program::voxels(kernel, first, count, grids);
+            return;
+        }
         const glm::ivec3 last = grids.size(1) - 1;
         const glm::ivec3 nearer = glm::min(first / 2, last);
         const glm::ivec3 farther =

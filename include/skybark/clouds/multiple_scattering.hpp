@@ -36,8 +36,12 @@
 // deep as 40: up to 37 %. (Plain δ-Eddington, cells as small: 9…48 %.)
 //
 // Solved by full multigrid with a number of steps that depends on the sizes alone: from one cell up
-// to the finest grid, a V-cycle on each and `cycles` on the last one, the limiter in between. No
-// history; nothing is allocated by `solve`; the same bits each time.
+// to the finest grid, a V-cycle on each and `cycles` on the last one, the limiter in between. Three
+// cycles leave an error of 1 % on the mean. Where voxels are far from cubes, as over a wide field
+// of clouds, that takes coarser grids of another shape (options.voxel; Mulder 1989, "A new
+// multigrid approach to convection problems", halves single axes as well): without, 14 % remain of
+// voxels that are nine times as wide as high. No history; nothing is allocated by `solve`; the same
+// bits each time.
 //
 // What a consumer does with it. At a place in the cloud, with I the sun's light there (e^{−A} of
 // the continuum's volume), E_0 the sun's irradiance and s = shared::scattering_without(ω, f), the
@@ -86,8 +90,11 @@ struct multiple_scattering_options {
     std::uint32_t halvings = 1; ///< the fluence has 2^-halvings of the volume's resolution: 1…4,
                                 ///< and no more than leave a cell
     std::uint32_t cycles = 3;   ///< V-cycles on the finest grid, 1…64
-    float spreading = 1.25f;    ///< factor of the limiter; 0: plain δ-Eddington, with …
-    float emptiness = 2;        ///< … 0 here: the resistance of empty space times W
+    glm::vec3 voxel{1};      ///< sides of the volume's voxels, in any unit, as they will be on the
+                             ///< whole: of what is more than twice as long as another, the coarser
+                             ///< grids are made accordingly (light_box::grid.voxel)
+    float spreading = 1.25f; ///< factor of the limiter; 0: plain δ-Eddington, with …
+    float emptiness = 2;     ///< … 0 here: the resistance of empty space times W
     std::uint64_t most_bytes = std::uint64_t{2} << 30; ///< what all volumes together may take
 };
 
@@ -265,7 +272,8 @@ class multiple_scattering {
     enum slot : std::size_t { extinction, scattered, beam, resistance, lit, phi };
     struct level {
         glm::ivec3 size{1};
-        glm::vec3 side{1};         ///< m
+        glm::vec3 side{1};                      ///< m
+        std::uint32_t axes = kernels::all_axes; ///< that the next one halves
         std::uint32_t volumes = 0; ///< two of fluence, or (finer than the finest) matter alone
         std::size_t current = 0;   ///< which of the two fluences is the latest
         std::vector<typename B::volume> volume;
@@ -274,15 +282,20 @@ class multiple_scattering {
     multiple_scattering(glm::uvec3 voxels, const multiple_scattering_options& options)
         : options_(options), voxels_(voxels) {
         glm::ivec3 size = (glm::ivec3(voxels) + 1) / 2;
+        glm::vec3 shape = options.voxel;
         for (;;) {
+            const bool is_finer = levels_.size() < finest(); // the fluence halves all axes alike
             level l;
             l.size = size;
-            l.volumes = levels_.size() < finest() ? 3 : 7;
+            l.volumes = is_finer ? 3 : 7;
+            l.axes = is_finer ? kernels::all_axes : axes_to_halve(size, shape);
+            const glm::ivec3 halved = kernels::halved_axes(l.axes, size);
             levels_.push_back(std::move(l));
             if (size == glm::ivec3(1)) {
                 return;
             }
-            size = (size + 1) / 2;
+            size = (size + halved) / (1 + halved);
+            shape *= glm::vec3(1 + halved);
         }
     }
 
@@ -301,17 +314,42 @@ class multiple_scattering {
         if (!(options.share > 0 && options.share <= 1) || options.halvings < 1 ||
             options.halvings > 4 || options.cycles < 1 || options.cycles > 64 ||
             !(options.spreading >= 0 && options.spreading <= 100) ||
-            !(options.emptiness >= 0 && options.emptiness <= 100)) {
+            !(options.emptiness >= 0 && options.emptiness <= 100) || !is_shape(options.voxel)) {
             return fail(error_code::bad_input,
                         std::string("Multiple scattering was asked for with a share of ") +
                             std::to_string(options.share) + ", " +
                             std::to_string(options.halvings) + " halvings, " +
                             std::to_string(options.cycles) + " cycles, spreading " +
-                            std::to_string(options.spreading) + " and emptiness " +
-                            std::to_string(options.emptiness) +
-                            "; expected above 0 to 1, 1 to 4, 1 to 64, 0 to 100 and 0 to 100.");
+                            std::to_string(options.spreading) + ", emptiness " +
+                            std::to_string(options.emptiness) + " and voxels of " +
+                            detail::number_text(options.voxel.x) + " x " +
+                            detail::number_text(options.voxel.y) + " x " +
+                            detail::number_text(options.voxel.z) +
+                            "; expected above 0 to 1, 1 to 4, 1 to 64, 0 to 100, 0 to 100 and "
+                            "sides from 1e-9 to 1e9.");
         }
         return {};
+    }
+
+    [[nodiscard]] static bool is_shape(glm::vec3 voxel) {
+        const auto is_side = [](float side) { return side >= 1e-9f && side <= 1e9f; };
+        return is_side(voxel.x) && is_side(voxel.y) && is_side(voxel.z);
+    }
+
+    /// The axes that the grid coarser than one of this size and shape halves: those along which its
+    /// cells are less than twice as long as along any other. What is left of an error across short
+    /// sides, relaxing has smoothed; along much longer ones nothing has, and a grid that halved
+    /// these as well could not hold it.
+    [[nodiscard]] static std::uint32_t axes_to_halve(glm::ivec3 size, glm::vec3 shape) {
+        float least = 3e38f;
+        for (int a = 0; a < 3; ++a) {
+            least = size[a] > 1 ? std::min(least, shape[a]) : least;
+        }
+        std::uint32_t axes = 0;
+        for (int a = 0; a < 3; ++a) {
+            axes |= shape[a] < 2 * least ? 1u << a : 0u;
+        }
+        return axes;
     }
 
     [[nodiscard]] float share_of_light(const attenuation_options& light) const {
@@ -335,9 +373,7 @@ class multiple_scattering {
         for (level& l : levels_) {
             l.current = 0;
             l.side = side;
-            for (int a = 0; a < 3; ++a) {
-                side[a] *= l.size[a] > 1 ? 2.0f : 1.0f;
-            }
+            side *= glm::vec3(1 + kernels::halved_axes(l.axes, l.size));
         }
     }
 
@@ -374,7 +410,7 @@ class multiple_scattering {
         map(recorder, matter, 0, {&attenuation},
             {at(0, extinction), at(0, scattered), at(0, beam)});
         for (std::size_t l = 1; l < levels_.size(); ++l) {
-            map(recorder, kernels::scatter_coarsen{}, l,
+            map(recorder, kernels::scatter_coarsen{levels_[l - 1].axes}, l,
                 {at(l - 1, extinction), at(l - 1, scattered), at(l - 1, beam)},
                 {at(l, extinction), at(l, scattered), at(l, beam)});
         }
@@ -389,7 +425,7 @@ class multiple_scattering {
         how.assumed = first ? 2 * empty_ : -1;
         map(recorder, how, l, {now(l), at(l, extinction)}, {at(l, resistance)});
         for (std::size_t c = l + 1; c < levels_.size(); ++c) {
-            map(recorder, kernels::scatter_average{}, c, {at(c - 1, resistance)},
+            map(recorder, kernels::scatter_average{levels_[c - 1].axes}, c, {at(c - 1, resistance)},
                 {at(c, resistance)});
         }
     }
@@ -432,7 +468,7 @@ class multiple_scattering {
     }
 
     void prolong(typename B::recorder& recorder, std::size_t l, bool from_zero) {
-        const kernels::scatter_prolong how{from_zero ? 1u : 0u};
+        const kernels::scatter_prolong how{from_zero ? 1u : 0u, levels_[l].axes};
         map(recorder, how, l, {now(l), now(l + 1)}, {next(l)});
         swap(l);
     }
@@ -443,7 +479,7 @@ class multiple_scattering {
             return;
         }
         smooth(recorder, l, !guessed);
-        map(recorder, kernels::scatter_restrict{equation(l)}, l + 1,
+        map(recorder, kernels::scatter_restrict{equation(l), levels_[l].axes}, l + 1,
             {now(l), at(l, resistance), at(l, extinction), at(l, lit)}, {at(l + 1, lit)});
         cycle(recorder, l + 1, false);
         prolong(recorder, l, false);

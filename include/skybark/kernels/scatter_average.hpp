@@ -14,13 +14,16 @@ struct scatter_average {
     static constexpr std::uint32_t volumes = 1;
     static constexpr std::uint32_t volume_targets = 1;
 
+    std::uint32_t axes = all_axes; ///< that the coarser grid halves
+
     template <class Grids>
     void voxel(glm::ivec3 at, const Grids& grids) const {
         const glm::ivec3 size = grids.size(0);
-        const glm::ivec3 first = first_child(at, size);
+        const glm::ivec3 halved = halved_axes(axes, size);
+        const glm::ivec3 first = first_child(at, halved);
         float sum = 0;
         for (int c = 0; c < 8; ++c) {
-            sum += 1.0f / grids.load(0, held(child_of(first, c, size), size));
+            sum += 1.0f / grids.load(0, held(child_of(first, c, halved), size));
         }
         grids.store(0, at, 8.0f / sum);
     }

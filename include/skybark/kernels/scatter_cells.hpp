@@ -38,17 +38,24 @@ struct scatter_equation {
     }
 };
 
-/// The first of the cells (up to 2 along each axis) that a coarser cell is made of. An axis of one
-/// cell stays as it is.
-[[nodiscard]] inline glm::ivec3 first_child(glm::ivec3 parent, glm::ivec3 size) {
-    return {size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
-            size.z > 1 ? 2 * parent.z : 0};
+/// Which axes a coarser grid halves: bit 0 for x, 1 for y, 2 for z.
+constexpr std::uint32_t all_axes = 7;
+/// 1 for each axis of a grid that is halved; one of a single cell stays as it is.
+[[nodiscard]] inline glm::ivec3 halved_axes(std::uint32_t axes, glm::ivec3 size) {
+    return {size.x > 1 ? static_cast<int>(axes & 1) : 0,
+            size.y > 1 ? static_cast<int>(axes >> 1 & 1) : 0,
+            size.z > 1 ? static_cast<int>(axes >> 2 & 1) : 0};
 }
 
-/// Child 0…7. Where an odd grid ends it lies outside, and is `held` to the last cell instead.
-[[nodiscard]] inline glm::ivec3 child_of(glm::ivec3 first, int which, glm::ivec3 size) {
-    return {size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
-            size.z > 1 ? first.z + (which >> 2) : 0};
+/// The first of the cells (up to 2 along each axis) that a coarser cell is made of.
+[[nodiscard]] inline glm::ivec3 first_child(glm::ivec3 parent, glm::ivec3 halved) {
+    return parent * (1 + halved);
+}
+
+/// Child 0…7; those along an axis that is not halved are the same ones twice. Where an odd grid
+/// ends it lies outside, and is `held` to the last cell instead.
+[[nodiscard]] inline glm::ivec3 child_of(glm::ivec3 first, int which, glm::ivec3 halved) {
+    return first + glm::ivec3(which & 1, which >> 1 & 1, which >> 2) * halved;
 }
 [[nodiscard]] inline glm::ivec3 held(glm::ivec3 at, glm::ivec3 size) {
     return glm::min(at, size - 1);

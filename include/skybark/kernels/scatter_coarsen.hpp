@@ -12,15 +12,18 @@ struct scatter_coarsen {
     static constexpr std::uint32_t volumes = 3;
     static constexpr std::uint32_t volume_targets = 3;
 
+    std::uint32_t axes = all_axes; ///< that the coarser grid halves
+
     template <class Grids>
     void voxel(glm::ivec3 at, const Grids& grids) const {
         const glm::ivec3 size = grids.size(0);
-        const glm::ivec3 first = first_child(at, size);
+        const glm::ivec3 halved = halved_axes(axes, size);
+        const glm::ivec3 first = first_child(at, halved);
         float extinction = 0;
         float scattered = 0;
         float beam = 0;
         for (int c = 0; c < 8; ++c) {
-            const glm::ivec3 child = child_of(first, c, size);
+            const glm::ivec3 child = child_of(first, c, halved);
             const bool inside = within(child, size);
             extinction += inside ? grids.load(0, child) : 0.0f;
             scattered += inside ? grids.load(1, child) : 0.0f;

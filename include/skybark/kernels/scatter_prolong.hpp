@@ -12,14 +12,16 @@ struct scatter_prolong {
     static constexpr std::uint32_t volumes = 2;
     static constexpr std::uint32_t volume_targets = 1;
 
-    std::uint32_t from_zero = 0; ///< 1: the finer fluence is not read and counts as 0
+    std::uint32_t from_zero = 0;   ///< 1: the finer fluence is not read and counts as 0
+    std::uint32_t axes = all_axes; ///< that the coarser grid halves
 
     template <class Grids>
     void voxel(glm::ivec3 at, const Grids& grids) const {
         const glm::ivec3 last = grids.size(1) - 1;
-        const glm::ivec3 nearer = glm::min(at / 2, last);
+        const glm::ivec3 halved = halved_axes(axes, grids.size(0));
+        const glm::ivec3 nearer = glm::min(at / (1 + halved), last);
         const glm::ivec3 farther =
-            glm::clamp(nearer + 2 * (at - 2 * (at / 2)) - 1, glm::ivec3(0), last);
+            glm::clamp(nearer + halved * (2 * (at - 2 * (at / 2)) - 1), glm::ivec3(0), last);
         const auto row = [&](int y, int z) {
             return 0.75f * grids.load(1, {nearer.x, y, z}) +
                    0.25f * grids.load(1, {farther.x, y, z});

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0404a165097f51aee06613dba76f69282ac857737b1c6d3613bd1f1dafd92e91
+// sha256 b6f5ef2df483a058e045083115d332b1d39de0c4085f8d3d5c109aa311563083
 #pragma once
 
 #include <skybark/kernels/scatter_average.hpp>
@@ -14,6 +14,7 @@ struct program<kernels::scatter_average> {
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 8, local_size_y = 8) in;
+#define KERNEL_PARAMETERS uint axes;
 #define KERNEL_VOLUMES 1
 #define KERNEL_TARGETS 1
 #ifdef SKYBARK_VULKAN
@@ -63,22 +64,23 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float scatter_load(int n, ivec3 at) { return texelFetch(kernel_volumes[n], at, 0).x; }
 ivec3 scatter_size(int n) { return textureSize(kernel_volumes[n], 0); }
-ivec3 first_child(ivec3 parent, ivec3 size) {
-return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
-size.z > 1 ? 2 * parent.z : 0);
+ivec3 halved_axes(uint axes, ivec3 size) {
+return ivec3(size.x > 1 ? int(axes & 1u) : 0, size.y > 1 ? int(axes >> 1u & 1u) : 0,
+size.z > 1 ? int(axes >> 2u & 1u) : 0);
 }
-ivec3 child_of(ivec3 first, int which, ivec3 size) {
-return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
-size.z > 1 ? first.z + (which >> 2) : 0);
+ivec3 first_child(ivec3 parent, ivec3 halved) { return parent * (1 + halved); }
+ivec3 child_of(ivec3 first, int which, ivec3 halved) {
+return first + ivec3(which & 1, which >> 1 & 1, which >> 2) * halved;
 }
 ivec3 held(ivec3 at, ivec3 size) { return min(at, size - 1); }
 bool within(ivec3 at, ivec3 size) { return all(lessThan(at, size)); }
 void kernel_voxel(ivec3 at) {
 ivec3 size = scatter_size(0);
-ivec3 first = first_child(at, size);
+ivec3 halved = halved_axes(axes, size);
+ivec3 first = first_child(at, halved);
 float sum = 0.0;
 for (int c = 0; c < 8; ++c) {
-sum += 1.0 / scatter_load(0, held(child_of(first, c, size), size));
+sum += 1.0 / scatter_load(0, held(child_of(first, c, halved), size));
 }
 imageStore(kernel_targets[0], at, vec4(8.0 / sum));
 }
@@ -87,7 +89,7 @@ if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
 kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
 }
-)glsl", 2652};
+)glsl", 2758};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 374d709f4513f2c568ef3ac494d370f2a28e3a81a6588884e2e9dddaecd33ef5
+// sha256 c5cea5df24e8b2fad2ede8d66d037df3d8ac60f6db679ca8c6cd30090abd53df
 #pragma once
 
 #include <skybark/kernels/scatter_coarsen.hpp>
@@ -14,6 +14,7 @@ struct program<kernels::scatter_coarsen> {
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 8, local_size_y = 8) in;
+#define KERNEL_PARAMETERS uint axes;
 #define KERNEL_VOLUMES 3
 #define KERNEL_TARGETS 3
 #ifdef SKYBARK_VULKAN
@@ -63,24 +64,25 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float scatter_load(int n, ivec3 at) { return texelFetch(kernel_volumes[n], at, 0).x; }
 ivec3 scatter_size(int n) { return textureSize(kernel_volumes[n], 0); }
-ivec3 first_child(ivec3 parent, ivec3 size) {
-return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
-size.z > 1 ? 2 * parent.z : 0);
+ivec3 halved_axes(uint axes, ivec3 size) {
+return ivec3(size.x > 1 ? int(axes & 1u) : 0, size.y > 1 ? int(axes >> 1u & 1u) : 0,
+size.z > 1 ? int(axes >> 2u & 1u) : 0);
 }
-ivec3 child_of(ivec3 first, int which, ivec3 size) {
-return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
-size.z > 1 ? first.z + (which >> 2) : 0);
+ivec3 first_child(ivec3 parent, ivec3 halved) { return parent * (1 + halved); }
+ivec3 child_of(ivec3 first, int which, ivec3 halved) {
+return first + ivec3(which & 1, which >> 1 & 1, which >> 2) * halved;
 }
 ivec3 held(ivec3 at, ivec3 size) { return min(at, size - 1); }
 bool within(ivec3 at, ivec3 size) { return all(lessThan(at, size)); }
 void kernel_voxel(ivec3 at) {
 ivec3 size = scatter_size(0);
-ivec3 first = first_child(at, size);
+ivec3 halved = halved_axes(axes, size);
+ivec3 first = first_child(at, halved);
 float extinction = 0.0;
 float scattered = 0.0;
 float beam = 0.0;
 for (int c = 0; c < 8; ++c) {
-ivec3 child = child_of(first, c, size);
+ivec3 child = child_of(first, c, halved);
 bool inside = within(child, size);
 extinction += inside ? scatter_load(0, child) : 0.0;
 scattered += inside ? scatter_load(1, child) : 0.0;
@@ -97,7 +99,7 @@ if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
 kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
 }
-)glsl", 3004};
+)glsl", 3110};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 1f0f94b7f3238af19b043dd0c039f54790d35e319dafe1272b2b07c3d8b6db37
+// sha256 c656b4d03406111f2d5822eb0edd3af1035c1f31c2c458d1bad8b237c57da890
 #pragma once
 
 #include <skybark/kernels/scatter_prolong.hpp>
@@ -14,7 +14,7 @@ struct program<kernels::scatter_prolong> {
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 8, local_size_y = 8) in;
-#define KERNEL_PARAMETERS uint from_zero;
+#define KERNEL_PARAMETERS uint from_zero; uint axes;
 #define KERNEL_VOLUMES 2
 #define KERNEL_TARGETS 1
 #ifdef SKYBARK_VULKAN
@@ -64,13 +64,13 @@ layout(binding = SKYBARK_TARGET_BINDING, r32f) writeonly uniform image3D kernel_
 #endif
 float scatter_load(int n, ivec3 at) { return texelFetch(kernel_volumes[n], at, 0).x; }
 ivec3 scatter_size(int n) { return textureSize(kernel_volumes[n], 0); }
-ivec3 first_child(ivec3 parent, ivec3 size) {
-return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
-size.z > 1 ? 2 * parent.z : 0);
+ivec3 halved_axes(uint axes, ivec3 size) {
+return ivec3(size.x > 1 ? int(axes & 1u) : 0, size.y > 1 ? int(axes >> 1u & 1u) : 0,
+size.z > 1 ? int(axes >> 2u & 1u) : 0);
 }
-ivec3 child_of(ivec3 first, int which, ivec3 size) {
-return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
-size.z > 1 ? first.z + (which >> 2) : 0);
+ivec3 first_child(ivec3 parent, ivec3 halved) { return parent * (1 + halved); }
+ivec3 child_of(ivec3 first, int which, ivec3 halved) {
+return first + ivec3(which & 1, which >> 1 & 1, which >> 2) * halved;
 }
 ivec3 held(ivec3 at, ivec3 size) { return min(at, size - 1); }
 bool within(ivec3 at, ivec3 size) { return all(lessThan(at, size)); }
@@ -79,8 +79,9 @@ return 0.75 * scatter_load(1, ivec3(near, y, z)) + 0.25 * scatter_load(1, ivec3(
 }
 void kernel_voxel(ivec3 at) {
 ivec3 last = scatter_size(1) - 1;
-ivec3 near = min(at / 2, last);
-ivec3 far = clamp(near + 2 * (at - 2 * (at / 2)) - 1, ivec3(0), last);
+ivec3 halved = halved_axes(axes, scatter_size(0));
+ivec3 near = min(at / (1 + halved), last);
+ivec3 far = clamp(near + halved * (2 * (at - 2 * (at / 2)) - 1), ivec3(0), last);
 float sum = 0.75 * (0.75 * row(near.x, far.x, near.y, near.z) + 0.25 * row(near.x, far.x, far.y, near.z)) +
 0.25 * (0.75 * row(near.x, far.x, near.y, far.z) + 0.25 * row(near.x, far.x, far.y, far.z));
 if (from_zero == 0u) {
@@ -93,7 +94,7 @@ if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
 kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
 }
-)glsl", 3040};
+)glsl", 3149};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 921902523d7f147e3ac8b4b3b74be9c71f712668ff2c4cce9b878030a0adbea7
+// sha256 d963d8de188b166125b60aee803ab007153c959461a131c6727b61c5cf449ad8
 #pragma once
 
 #include <skybark/kernels/scatter_restrict.hpp>
@@ -14,7 +14,7 @@ struct program<kernels::scatter_restrict> {
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
 layout(local_size_x = 8, local_size_y = 8) in;
-#define KERNEL_PARAMETERS vec4 sides; float absorption;
+#define KERNEL_PARAMETERS vec4 sides; float absorption; uint axes;
 #define KERNEL_VOLUMES 4
 #define KERNEL_TARGETS 1
 #ifdef SKYBARK_VULKAN
@@ -87,13 +87,13 @@ return moment * beam * (here + beyond) / (w_here + w_beyond);
 }
 float scatter_load(int n, ivec3 at) { return texelFetch(kernel_volumes[n], at, 0).x; }
 ivec3 scatter_size(int n) { return textureSize(kernel_volumes[n], 0); }
-ivec3 first_child(ivec3 parent, ivec3 size) {
-return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
-size.z > 1 ? 2 * parent.z : 0);
+ivec3 halved_axes(uint axes, ivec3 size) {
+return ivec3(size.x > 1 ? int(axes & 1u) : 0, size.y > 1 ? int(axes >> 1u & 1u) : 0,
+size.z > 1 ? int(axes >> 2u & 1u) : 0);
 }
-ivec3 child_of(ivec3 first, int which, ivec3 size) {
-return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
-size.z > 1 ? first.z + (which >> 2) : 0);
+ivec3 first_child(ivec3 parent, ivec3 halved) { return parent * (1 + halved); }
+ivec3 child_of(ivec3 first, int which, ivec3 halved) {
+return first + ivec3(which & 1, which >> 1 & 1, which >> 2) * halved;
 }
 ivec3 held(ivec3 at, ivec3 size) { return min(at, size - 1); }
 bool within(ivec3 at, ivec3 size) { return all(lessThan(at, size)); }
@@ -117,10 +117,11 @@ return across(sum, 2, ivec3(at.x, at.y, at.z + 1), here, from_zero);
 }
 void kernel_voxel(ivec3 at) {
 ivec3 size = scatter_size(0);
-ivec3 first = first_child(at, size);
+ivec3 halved = halved_axes(axes, size);
+ivec3 first = first_child(at, halved);
 float left = 0.0;
 for (int c = 0; c < 8; ++c) {
-ivec3 child = child_of(first, c, size);
+ivec3 child = child_of(first, c, halved);
 if (within(child, size)) {
 scatter_balance sum = balance(child, false);
 left += sum.gain - sum.loss * scatter_load(0, child);
@@ -133,7 +134,7 @@ if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
 kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
 }
-)glsl", 4617};
+)glsl", 4697};
 };
 
 } // namespace skybark::opengl
