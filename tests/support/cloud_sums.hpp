@@ -49,21 +49,20 @@ inline glm::dvec3 middle_of(const light_grid& grid, glm::dvec3 cells) {
 }
 
 /// What a particle takes out between a place and the sun, and whether the place lies so near to an
-/// edge of the particle, within so much of its radius, that rounding decides.
+/// edge of the particle that rounding decides.
 struct exact_depth {
     double tau = 0;
     bool on_edge = false;
 };
 inline exact_depth depth_of(const cloud_particle& p, glm::dvec3 at, glm::dvec3 sun,
-                            attenuation_profile profile, double sigmas = 3,
-                            double near_edge = 1e-5) {
+                            attenuation_profile profile, double sigmas = 3) {
     const glm::dvec3 v = at - glm::dvec3(p.position);
     const double r = double(p.radius);
     const double height = glm::dot(v, sun);
     const double d2 = std::max(0.0, glm::dot(v, v) - height * height);
     const double d = std::sqrt(d2);
     exact_depth found;
-    const double near = near_edge * r;
+    const double near = 1e-5 * r;
     found.on_edge =
         (std::abs(d - r) < near && height < r + near) ||
         (d < r + near && (std::abs(height - r) < near ||
