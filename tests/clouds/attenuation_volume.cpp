@@ -490,6 +490,11 @@ TEST(attenuation_accuracy, volumes_larger_than_a_binding) {
             worst = std::max(worst, std::abs(double(values[i]) - double(expected[i])));
         }
         EXPECT_LE(worst, 1e-4);
+        const std::uint64_t most = device.limits().max_buffer_bytes;
+        if (most >= values.size() * sizeof(float)) {
+            GTEST_SKIP() << "Right, but of no more than this device can bind: " << (most >> 20)
+                         << " MiB";
+        }
     });
 }
 
