@@ -249,36 +249,72 @@ TEST_P(attenuation, a_particle_cuts_np_slices_and_the_rest_is_degenerate) {
     });
 }
 
+/// The value of an IEEE 754 binary16.
+double half_value(std::uint16_t half) {
+    const int exponent = half >> 10 & 31;
+    const double fraction = half & 1023;
+    const double size =
+        exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
+    return (half & 0x8000) != 0 ? -size : size;
+}
+
+/// A volume of half floats.
+template <class B>
+std::vector<std::uint16_t> halves_of(B& device, std::span<const cloud_particle> particles,
+                                     glm::uvec3 voxels, attenuation_options way) {
+    way.format = volume_format::float16;
+    const auto box = fit_light_box(particles, slanting, voxels);
+    auto volume = attenuation_volume<B>::create(device, voxels, way);
+    auto buffer = make_buffer<B, cloud_particle>(device, particles);
+    std::vector<std::uint16_t> halves(std::size_t{voxels.x} * voxels.y * voxels.z);
+    if (!box || !volume || !buffer ||
+        !run(device,
+             [&](auto& recorder) {
+                 volume->relight(recorder, view<B>(*buffer),
+                                 static_cast<std::uint32_t>(particles.size()), *box);
+             }) ||
+        !device.download(volume->volume(), std::as_writable_bytes(std::span(halves)))) {
+        ADD_FAILURE();
+        return {};
+    }
+    return halves;
+}
+
 TEST_P(attenuation, half_floats_err_as_stated) {
     support::with_device(GetParam(), [](auto& device) {
-        using B = std::remove_reference_t<decltype(device)>;
         const auto particles = ball(300, 0.05f, 0.2f, 1.5f, 7);
         const glm::uvec3 voxels(24, 24, 24);
-        attenuation_options way = with(attenuation_method::impulse_scan, attenuation_profile::erf);
-        const auto whole = cold(device, particles, slanting, voxels, way);
-        way.format = volume_format::float16;
-        const auto box = fit_light_box(particles, slanting, voxels);
-        auto volume = attenuation_volume<B>::create(device, voxels, way);
-        auto buffer = make_buffer<B, cloud_particle>(device, particles);
-        ASSERT_TRUE(box && volume && buffer);
-        ASSERT_TRUE(run(device, [&](auto& recorder) {
-            volume->relight(recorder, view<B>(*buffer), 300, *box);
-        }));
-        std::vector<std::uint16_t> halves(whole.size());
-        ASSERT_TRUE(device.download(volume->volume(), std::as_writable_bytes(std::span(halves))));
-        double worst = 0;
-        double deepest = 0;
-        for (std::size_t i = 0; i < halves.size(); ++i) {
-            const int exponent = halves[i] >> 10 & 31;
-            const double fraction = halves[i] & 1023;
-            const double value = exponent == 0 ? std::ldexp(fraction, -24)
-                                               : std::ldexp(1024 + fraction, exponent - 25);
-            worst = std::max(worst, std::abs(std::exp(-value) - std::exp(-double(whole[i]))));
-            deepest = std::max(deepest, value);
+        for (const auto& [light, forward] : {std::pair{attenuation_light::extinction, 0.0f},
+                                             std::pair{attenuation_light::product, 6.5f}}) {
+            const auto way =
+                with(attenuation_method::impulse_scan, attenuation_profile::erf, light, forward);
+            const auto whole = cold(device, particles, slanting, voxels, way);
+            const auto halves = halves_of(device, particles, voxels, way);
+            ASSERT_EQ(halves.size(), whole.size());
+            double worst = 0;
+            double least = 0;
+            double most = 0;
+            for (std::size_t i = 0; i < halves.size(); ++i) {
+                const double exact = double(whole[i]);
+                const double value = half_value(halves[i]);
+                // 10 bits follow the first: half of the last is 2^-11 of a power of two, and less
+                // of what lies above. From 2^-14 down the last stays 2^-24.
+                EXPECT_LE(std::abs(value - exact), 0x1p-11 * std::abs(exact) + 0x1p-25);
+                if (exact >= 0) {
+                    worst = std::max(worst, std::abs(std::exp(-value) - std::exp(-exact)));
+                }
+                least = std::min(least, value);
+                most = std::max(most, value);
+            }
+            // 2^-11 A e^-A, the largest at A = 1.
+            EXPECT_LE(worst, 0.00018);
+            if (light == attenuation_light::product) {
+                EXPECT_LT(least, -3); // it amplifies
+            } else {
+                EXPECT_GT(worst, 0.00005);
+                EXPECT_GT(most, 3);
+            }
         }
-        EXPECT_GT(deepest, 3);
-        EXPECT_LE(worst, 0.00018);
-        EXPECT_GT(worst, 0.00005);
     });
 }
 

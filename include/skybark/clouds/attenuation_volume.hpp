@@ -60,8 +60,9 @@ struct attenuation_options {
     /// sets both.
     float forward = 0;
     float sigmas = 3; ///< standard deviations of the Gaussian in a particle's radius
-    /// float16 halves the memory that is sampled. Rounding then moves −ln of the light by 2^-11 of
-    /// itself at most, so the light by 0.00018 (at an attenuation of 1).
+    /// float16 halves the memory that is sampled. Rounding then moves A, −ln of the light, by
+    /// 2^-11 |A| at most (2^-25 where |A| is below 2^-14): the light by 0.00018 of the sun's at
+    /// most where A >= 0 (at A = 1), and by 2^-11 |A| of itself where the product amplifies it.
     volume_format format = volume_format::float32;
 
     // Of shadow_polygons alone:
@@ -143,7 +144,8 @@ class attenuation_volume {
     }
 
     /// Records the whole volume for `count` particles (`cloud_particle`s on the device, in any
-    /// order; none is allowed: no attenuation). `box` was fitted to them, for as many voxels. Of
+    /// order; none is allowed: no attenuation). `box` was fitted to them, for as many voxels. The
+    /// view may be longer than a kernel can be given of this device: it goes through in parts. Of
     /// particles that nobody has checked, a depth or an albedo that is no number, or below 0,
     /// counts as 0, and a larger one as the largest that `check_particles` takes.
     void relight(typename B::recorder& recorder, const buffer_view<B>& particles,
@@ -156,8 +158,7 @@ class attenuation_volume {
             sum_listed(recorder, particles, count);
             convert(recorder);
         } else {
-            const kernels::shadow_slab slabs{shade()};
-            recorder.accumulate(slabs, {particles}, range{0, count}, into(true));
+            sum_slabs(recorder, kernels::shadow_slab{shade()}, particles, count);
             convert(recorder);
         }
     }
@@ -377,11 +378,42 @@ class attenuation_volume {
         volume_scan how;
         how.scale = box_.grid.voxel.w;
         if constexpr (fuses_accumulate_scan<B, kernels::particle_impulse>) {
-            recorder.accumulate_scan(impulse, {particles}, range{0, count}, *sums_, *volume_, how);
-        } else {
-            recorder.accumulate(impulse, {particles}, range{0, count},
-                                accumulation<B>{&*sums_, true});
-            recorder.scan(*sums_, *volume_, how);
+            if (count <= most_at_once()) {
+                recorder.accumulate_scan(impulse, {particles}, range{0, count}, *sums_, *volume_,
+                                         how);
+                return;
+            }
+        }
+        sum_slabs(recorder, impulse, particles, count);
+        recorder.scan(*sums_, *volume_, how);
+    }
+
+    /// As many particles as a kernel can be given, and a view may begin after.
+    [[nodiscard]] std::uint32_t most_at_once() const {
+        const std::uint64_t fit = std::min({limits_.max_buffer_bytes / sizeof(cloud_particle),
+                                            limits_.max_elements, std::uint64_t{1} << 31});
+        return static_cast<std::uint32_t>(std::max(fit / list_step(), std::uint64_t{1}) *
+                                          list_step());
+    }
+    [[nodiscard]] static buffer_view<B> part_of(const buffer_view<B>& particles,
+                                                std::uint32_t first, std::uint32_t count) {
+        buffer_view<B> part = particles;
+        part.offset += std::uint64_t{first} * sizeof(cloud_particle);
+        part.size = std::uint64_t{count} * sizeof(cloud_particle);
+        return part;
+    }
+
+    /// Of as many particles at a time as a kernel can be given.
+    template <class K>
+    void sum_slabs(typename B::recorder& recorder, const K& kernel, const buffer_view<B>& particles,
+                   std::uint32_t count) {
+        bool first = true;
+        for (std::uint32_t done = 0; done < count || first; first = false) {
+            const std::uint32_t now = std::min(most_at_once(), count - done);
+            const buffer_view<B> part =
+                count <= most_at_once() ? particles : part_of(particles, done, now);
+            recorder.accumulate(kernel, {part}, range{0, now}, into(first));
+            done += now;
         }
     }
 
@@ -396,9 +428,7 @@ class attenuation_volume {
         bool first = true;
         for (std::uint32_t done = 0; done < count || first;) {
             const std::uint32_t now = std::min(chunk, count - done);
-            buffer_view<B> part = particles;
-            part.offset += std::uint64_t{done} * sizeof(cloud_particle);
-            part.size = std::uint64_t{now} * sizeof(cloud_particle);
+            const buffer_view<B> part = part_of(particles, done, now);
             recorder.expand(slabs, {part}, range{0, now}, {list, length, options_.policy});
             recorder.accumulate(polygons, {part, list}, counted<B>{length, 2 * slabs.slabs() * now},
                                 into(first));
