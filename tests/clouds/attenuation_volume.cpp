@@ -4,6 +4,7 @@
 #include "support/devices.hpp"
 
 #include <skybark/clouds/attenuation_volume.hpp>
+#include <skybark/clouds/light_at_points.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -315,6 +316,73 @@ TEST_P(attenuation, half_floats_err_as_stated) {
                 EXPECT_GT(most, 3);
             }
         }
+    });
+}
+
+/// Where the water lies: at particles picked at random, spread as their Gaussians are.
+std::vector<glm::vec4> places_in(std::span<const cloud_particle> particles, std::size_t count,
+                                 unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<std::size_t> pick(0, particles.size() - 1);
+    std::normal_distribution<float> normal;
+    std::vector<glm::vec4> places(count);
+    for (glm::vec4& place : places) {
+        const cloud_particle& p = particles[pick(random)];
+        const glm::vec3 off(normal(random), normal(random), normal(random));
+        place = glm::vec4(p.position + off * (p.radius / 3), 0);
+    }
+    return places;
+}
+
+// As a caller asks for it, and at a level sun.
+TEST_P(attenuation, light_at_places_is_the_exact_transmittance) {
+    support::with_device(GetParam(), [](auto& device) {
+        using B = std::remove_reference_t<decltype(device)>;
+        const glm::vec3 level(0.8f, 0, -0.6f);
+        const glm::uvec3 voxels(128);
+        const auto particles = blobs(18);
+        const auto places = places_in(particles, 2000, 19);
+        const auto count = static_cast<std::uint32_t>(places.size());
+        const auto box = fit_light_box(particles, level, voxels);
+        auto sun = attenuation_volume<B>::create(
+            device, voxels, with(attenuation_method::impulse_scan, attenuation_profile::erf));
+        auto buffer = make_buffer<B, cloud_particle>(device, particles);
+        auto at = make_buffer<B, glm::vec4>(device, places);
+        auto found = device.create_buffer(places.size() * sizeof(glm::vec4));
+        ASSERT_TRUE(box && sun && buffer && at && found);
+        result<void> looked;
+        ASSERT_TRUE(run(device, [&](auto& recorder) {
+            sun->relight(recorder, view<B>(*buffer), static_cast<std::uint32_t>(particles.size()),
+                         *box);
+            looked = record_light_at(recorder, device.limits(), *sun, nullptr, view<B>(*at), count,
+                                     view<B>(*found));
+        }));
+        ASSERT_TRUE(looked);
+        std::vector<glm::vec4> lights(places.size());
+        ASSERT_TRUE((read_back<B, glm::vec4>(device, *found, std::span(lights))));
+        double off = 0;
+        double exact_sum = 0;
+        double sum = 0;
+        double depth = 0;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            double tau = 0;
+            for (const cloud_particle& p : particles) {
+                tau += depth_of(p, glm::dvec3(glm::vec3(places[i])),
+                                glm::normalize(glm::dvec3(level)), attenuation_profile::erf)
+                           .tau;
+            }
+            const double light = double(lights[i].y);
+            EXPECT_NEAR(light, std::exp(-double(lights[i].x)), 1e-6); // its exponential: 2e-7
+            off += std::abs(light - std::exp(-tau));
+            exact_sum += std::exp(-tau);
+            sum += light;
+            depth += tau;
+        }
+        EXPECT_NEAR(depth / count, 7, 1.5);
+        EXPECT_LE(off / count, 0.002);
+        EXPECT_LE(std::abs(sum / exact_sum - 1), 0.01);
+        std::printf("128^3: mean |dT| %.6f, bias %.4f, mean depth %.2f\n", off / count,
+                    sum / exact_sum - 1, depth / count);
     });
 }
 
