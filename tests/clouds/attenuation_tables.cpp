@@ -19,7 +19,7 @@ TEST(attenuation_tables, profiles) {
     const auto particles = blobs(11);
     std::printf("profile  volume  mean |dT|   bias of the mean T\n");
     for (const auto profile : {attenuation_profile::step, attenuation_profile::erf}) {
-        for (const std::uint32_t side : {32u, 64u, 128u}) {
+        for (const std::uint32_t side : {32u, 64u, 128u, 256u}) {
             const glm::uvec3 voxels(side);
             const auto box = fit_light_box(particles, slanting, voxels);
             const auto values = cold(device, particles, slanting, voxels,
