@@ -63,8 +63,9 @@ struct drift_bounds {
     float deepest = 100;      ///< no straight line has more optical depth than this
 };
 
-/// The bounds of all particles that have not faded. `deepest` is that of a line all through a cloud
-/// that is filled with the extinction `densest` (1/m), twice over.
+/// The bounds of all particles that have not faded. `deepest` is twice the optical depth of a line
+/// through nothing but the extinction `densest` (1/m) that is as long as the cylinder is wide and
+/// high together: no line in it is longer, however the clouds lie.
 [[nodiscard]] inline drift_bounds reach_of(std::span<const cloud_particle> particles,
                                            std::span<const glm::vec4> middles, const drift_box& box,
                                            float densest = 0.2f) {

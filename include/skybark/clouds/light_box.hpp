@@ -30,7 +30,9 @@ struct light_box {
     light_grid grid;
     glm::uvec3 voxels{0};
     float largest_radius = 0; ///< of a particle, m; 0 for a density grid
-    float deepest = 0;        ///< no line along the light has more optical depth than this
+    /// No line along the light has more optical depth of particles than this. Of a density grid,
+    /// whose sums are floats, it says nothing.
+    float deepest = 0;
 };
 
 /// What a fit needs to know of a cloud whose particles are on the device only. A radius or a depth
@@ -38,7 +40,7 @@ struct light_box {
 struct cloud_bounds {
     glm::vec3 low{0};         ///< m, with the radii
     glm::vec3 high{0};        ///< m, with the radii
-    float largest_radius = 0; ///< m, above 0
+    float largest_radius = 0; ///< of a particle, m; 0: there are none, but a density grid
     float deepest = 100;      ///< no straight line has more optical depth than this
 };
 
