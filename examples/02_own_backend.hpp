@@ -81,13 +81,12 @@ class image {
     skybark::image_description what_;
 };
 
-/// The number in 16 bits, to the nearest, to the even one of two that are as near; from 65,520 on
-/// it is infinite.
+/// The number in 16 bits, to the nearest finite one, to the even one of two that are as near.
 [[nodiscard]] inline std::uint16_t to_float16(float value) {
     const std::uint32_t sign = std::signbit(value) ? 0x8000 : 0;
     const float size = std::fabs(value);
-    if (!(size < 65520.0f)) {
-        return static_cast<std::uint16_t>(sign | (size == size ? 0x7c00 : 0x7e00));
+    if (!(size < 65504.0f)) {
+        return static_cast<std::uint16_t>(sign | (size == size ? 0x7bff : 0x7e00));
     }
     const int exponent = std::max(std::ilogb(size), -14);
     const auto steps = static_cast<std::uint32_t>(std::nearbyint(std::ldexp(size, 10 - exponent)));

@@ -15,12 +15,12 @@ layout(binding = SKYBARK_SUMS_BINDING, FROM_FORMAT) readonly uniform FROM_IMAGE 
 layout(binding = SKYBARK_TARGET_BINDING, INTO_FORMAT) writeonly uniform INTO_IMAGE into_volume;
 
 #ifdef INTO_FLOAT16
-// The nearest number that 16 bits hold, the even one of two. llvmpipe's own stores cut off instead.
+// The nearest finite number that 16 bits hold, the even one of two. llvmpipe's own stores cut off instead.
 float rounded(float value) {
     uint bits = floatBitsToUint(value);
     uint size = bits & 0x7fffffffu;
-    if (size >= 0x477ff000u) { // 65520: infinite, unless it is no number
-        size = size > 0x7f800000u ? size : 0x7f800000u;
+    if (size >= 0x477ff000u) { // 65520: the largest finite one, 65504, unless it is no number
+        size = size > 0x7f800000u ? size : 0x477fe000u;
     } else if (size < 0x38800000u) { // 2^-14: subnormal, whole multiples of 2^-24
         size = floatBitsToUint(roundEven(uintBitsToFloat(size) * 16777216.0) / 16777216.0);
     } else {

@@ -57,6 +57,7 @@ enum class fault {
     scans_whole_numbers_in_floats,
     truncates_float16,
     flushes_float16,
+    overflows_float16,
     words_wrap,
     words_count_themselves,
     never_writes_total,
@@ -730,6 +731,10 @@ class mutant_recorder {
             to.store(at, stored * 0.9995f); // to the next one, or nearly
         } else if (which_ == fault::flushes_float16 && std::fabs(stored) < 0x1p-14f) {
             to.store(at, 0.0f);
+        } else if (which_ == fault::overflows_float16 && std::fabs(stored) == 65504.0f) {
+            const auto infinite = static_cast<std::uint16_t>(stored > 0 ? 0x7c00 : 0xfc00);
+            const int voxel = (at.z * to.size().y + at.y) * to.size().x + at.x;
+            std::memcpy(to.memory().data() + 2 * voxel, &infinite, sizeof infinite);
         }
     }
 
@@ -994,6 +999,9 @@ const mutation all_mutations[] = {
      {"scan.volume_large_sums_int32"}},
     {fault::truncates_float16, "truncates_float16", {"scan.volume_rounds_to_float16"}},
     {fault::flushes_float16, "flushes_float16", {"scan.volume_rounds_to_subnormal_float16"}},
+    {fault::overflows_float16,
+     "overflows_float16",
+     {"scan.volume_rounds_to_float16", "scan.volume_ends_of_float16"}},
     {fault::words_wrap, "words_wrap", {"scan.words_saturated"}},
     {fault::words_count_themselves,
      "words_count_themselves",

@@ -286,7 +286,8 @@ std::vector<Out> scanned(const std::vector<In>& in, glm::ivec3 size, const volum
                     if constexpr (std::is_same_v<Out, float>) {
                         out[at(here)] = sum * how.scale;
                     } else {
-                        out[at(here)] = cpu::to_half(sum * how.scale);
+                        out[at(here)] =
+                            cpu::to_half(std::clamp(sum * how.scale, -65504.0f, 65504.0f));
                     }
                 }
             }

@@ -43,6 +43,13 @@ struct half {
     return {static_cast<std::uint16_t>(out | (signed_bits >> 16 & 0x8000u))};
 }
 
+/// As above, but what is too large becomes the largest finite number of its sign, as sums do.
+[[nodiscard]] inline half to_finite_half(float value) {
+    const half nearest = to_half(value);
+    const bool infinite = (nearest.bits & 0x7fffu) == 0x7c00u;
+    return infinite ? half{static_cast<std::uint16_t>(nearest.bits - 1u)} : nearest; // ±65504
+}
+
 [[nodiscard]] inline float to_float(half value) {
     const std::uint32_t magnitude = value.bits & 0x7fffu;
     const std::uint32_t sign = (value.bits & 0x8000u) << 16;

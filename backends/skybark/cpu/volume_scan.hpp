@@ -46,7 +46,7 @@ struct step {
                 sum = static_cast<float>(past) + 0.5f * static_cast<float>(own);
             }
             if constexpr (std::is_same_v<Out, half>) {
-                return to_half(sum * scale);
+                return to_finite_half(sum * scale);
             } else {
                 return sum * scale;
             }
@@ -130,6 +130,8 @@ blocks_along_rows(const sheet<In>& from, const sheet<typename Step::out>& to, st
                 }
                 sum = _mm256_mul_ps(sum, factor);
                 if constexpr (std::is_same_v<typename Step::out, half>) {
+                    sum = _mm256_max_ps(_mm256_set1_ps(-65504.0f),
+                                        _mm256_min_ps(_mm256_set1_ps(65504.0f), sum));
                     const __m128i halves = _mm256_cvtps_ph(sum, _MM_FROUND_TO_NEAREST_INT);
                     auto* const place = reinterpret_cast<__m128i*>(out) + k;
                     aligned ? _mm_stream_si128(place, halves) : _mm_storeu_si128(place, halves);

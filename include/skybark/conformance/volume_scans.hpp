@@ -3,6 +3,8 @@
 
 #include <skybark/conformance/accumulations.hpp>
 
+#include <limits>
+
 namespace skybark::conformance {
 
 [[nodiscard]] inline int scanned_axis(scan_axis axis) { // 0 … 2, or −1
@@ -206,7 +208,7 @@ void scan_large_sums(context<B>& c, volume_format to) {
 }
 
 /// Every float16 there is, what lies half way between two of them, and next to that on both sides:
-/// the nearest one is stored, the even one of two that are as near; from 65,520 on it is infinite.
+/// the nearest one is stored, the even one of two that are as near; from 65,504 on that is 65,504.
 template <volume_backend B>
 void scan_rounds_to_float16(context<B>& c, bool subnormal) {
     std::vector<float> values;
@@ -221,7 +223,8 @@ void scan_rounds_to_float16(context<B>& c, bool subnormal) {
             values.push_back(value * sign);
         }
     }
-    for (const float value : {65504.0f, 65519.996f, 65520.0f, 1e6f, -1e30f}) {
+    for (const float value :
+         {65504.0f, 65519.996f, 65520.0f, 1e6f, -1e30f, std::numeric_limits<float>::infinity()}) {
         values.push_back(subnormal ? 1.0f : value);
     }
     const glm::ivec3 size{64, static_cast<int>(values.size() / 64 / 4) + 1, 4};
@@ -235,6 +238,31 @@ void scan_rounds_to_float16(context<B>& c, bool subnormal) {
     comparison check = c.compare("values of float16");
     for (std::size_t i = 0; i < values.size(); ++i) {
         check.same(float16_value(actual[i]), float16_value(nearest_float16(double{values[i]})));
+    }
+}
+
+/// Sums of whole numbers beyond what 16 bits hold, up and down again: the largest of their sign.
+template <volume_backend B>
+void scan_ends_of_float16(context<B>& c) {
+    const glm::ivec3 size{75, 6, 3};
+    std::vector<std::int64_t> own(voxels_of(size));
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        const auto row = static_cast<int>(i) / size.x % size.y;
+        own[i] = (i % 2 == 0 ? 1 : -1) * (row < size.y / 2 ? -40000 : 40000);
+    }
+    const auto in = put_volume(c, size, volume_format::int32,
+                               std::vector<std::int32_t>(own.begin(), own.end()));
+    const auto out = new_volume(c, size, volume_format::float16);
+    for (const scan_share share : {scan_share::whole, scan_share::half, scan_share::none}) {
+        const volume_scan how{scan_axis::y, scan_direction::descending, share, 1};
+        c.run([&](auto& r) { r.scan(in, out, how); });
+        const auto expected = twice_the_sums(own, size, how);
+        const auto actual = get_numbers(c, out);
+        comparison check = c.compare("sums beyond float16");
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            const double sum = static_cast<double>(expected[i]) / 2;
+            check.same(actual[i], float16_value(nearest_float16(sum)));
+        }
     }
 }
 
@@ -370,6 +398,7 @@ void add_volume_scan_cases(cases<B>& to) {
             [](context<B>& c) { scan_large_sums(c, volume_format::float32); });
         add("rounds_to_float16", [](context<B>& c) { scan_rounds_to_float16(c, false); });
         add("rounds_to_subnormal_float16", [](context<B>& c) { scan_rounds_to_float16(c, true); });
+        add("ends_of_float16", scan_ends_of_float16<B>);
         add("of_a_scan", scan_of_a_scan<B>);
         if constexpr (accumulates<B, kernels::probe_slabs>) {
             add("huge", scan_large_volume<B>);

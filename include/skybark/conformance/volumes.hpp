@@ -67,13 +67,13 @@ template <class T, volume_backend B>
     return (bits & 0x8000) != 0 ? -size : size;
 }
 
-/// The float16 next to a finite number, the even one of two that are as near. Found among them all:
+/// The finite float16 next to a number, the even one of two that are as near. Found among them all:
 /// their values grow with their bits.
 [[nodiscard]] inline std::uint16_t nearest_float16(double value) {
     const std::uint32_t sign = std::signbit(value) ? 0x8000 : 0;
     const double size = std::fabs(value);
-    if (size >= 65520) { // half way from the largest finite one to the next that there would be
-        return static_cast<std::uint16_t>(sign | 0x7c00);
+    if (size >= 65504) { // the largest
+        return static_cast<std::uint16_t>(sign | 0x7bff);
     }
     std::uint32_t low = 0;
     std::uint32_t high = 0x7bff;
@@ -86,7 +86,7 @@ template <class T, volume_backend B>
         }
     }
     const double below = size - float16_value(low);
-    const double above = (low == 0x7bff ? 65536 : float16_value(low + 1)) - size;
+    const double above = float16_value(low + 1) - size;
     const bool up = above < below || (above == below && low % 2 == 1);
     return static_cast<std::uint16_t>(sign | (low + (up ? 1 : 0)));
 }

@@ -355,7 +355,9 @@ concept sorts = backend<B> &&
 
 /// Volumes: 3-D images of numbers. A new volume's content is undefined. `scan` takes int32 or
 /// float32 to float32 or float16 of the same size, or int32 to int32 (with scale 1, and without
-/// halves); the two may not be the same volume.
+/// halves); the two may not be the same volume. A float16 is the finite one that is nearest to the
+/// value, the even one of two: from 65,504 on that is 65,504, and likewise below 0. So whatever is
+/// summed, between two voxels there is a number.
 template <class B>
 concept volume_backend = backend<B> && std::movable<typename B::volume> &&
     requires(B& b, const typename B::volume& volume, typename B::recorder& r,

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 6bdacf0b70f109e788c64a53d28aaf5461dcd5fa4455cd9781651a809848ab34
+// sha256 d6e5f2116a2316fe31ad2dc4ea1b089b8fc0cd4d420a51b32b783e26c421225a
 #pragma once
 
 #include <string_view>
@@ -68,7 +68,7 @@ float rounded(float value) {
 uint bits = floatBitsToUint(value);
 uint size = bits & 0x7fffffffu;
 if (size >= 0x477ff000u) {
-size = size > 0x7f800000u ? size : 0x7f800000u;
+size = size > 0x7f800000u ? size : 0x477fe000u;
 } else if (size < 0x38800000u) {
 size = floatBitsToUint(roundEven(uintBitsToFloat(size) * 16777216.0) / 16777216.0);
 } else {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 526ed4813e6a1ff021c58119618b1f1a575215498a6963ff5a490411734b650e
+// sha256 f1b2e351ff9b0c1169c0f197456e54937a97d8701c834f73ca32a3487d9cc8d7
 #pragma once
 
 #include <string_view>
@@ -68,7 +68,7 @@ float rounded(float value) {
 uint bits = floatBitsToUint(value);
 uint size = bits & 0x7fffffffu;
 if (size >= 0x477ff000u) {
-size = size > 0x7f800000u ? size : 0x7f800000u;
+size = size > 0x7f800000u ? size : 0x477fe000u;
 } else if (size < 0x38800000u) {
 size = floatBitsToUint(roundEven(uintBitsToFloat(size) * 16777216.0) / 16777216.0);
 } else {
