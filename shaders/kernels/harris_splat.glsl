@@ -26,6 +26,6 @@ void kernel_map(uint pixel) {
     float depth = particle_attenuation(p, dx * dx + dz * dz, sigmas, 0u, 0.0);
     if (depth > 0.0) {
         uint at = uint(z) * columns + uint(x);
-        after[at] = exp_minus(depth) * before[at] + p.albedo * depth * forward * incoming;
+        after[at] = exp_minus(depth) * before[at] + bounded(p.albedo, 1.0) * depth * forward * incoming;
     }
 }

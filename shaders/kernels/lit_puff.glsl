@@ -32,7 +32,7 @@ vec4 kernel_vertex(uint index) {
         air = sky_radiance(scene.sky, c * (1.0 / away));
     }
     varying_out[1] = vec4(c, radius);
-    scaled_scattering scaled = scattering_without(water.y, lighting.forward);
+    scaled_scattering scaled = scattering_without(bounded(water.y, 1.0), lighting.forward);
     varying_out[2] = vec4(air, 0.0);
     varying_out[3] = vec4(lighting.by_particle != 0u ? light[number] : -1.0, scaled.single,
                           scaled.diffuse, 0.0);

@@ -23,7 +23,7 @@ void kernel_map(uint i) {
     float reach = sqrt(dot(away, away));
     if (water.x > 0.0 && ball.w > 0.0 && reach > 0.0) {
         vec3 ahead = away * (1.0 / reach);
-        scaled_scattering scaled = scattering_without(water.y, lighting.forward);
+        scaled_scattering scaled = scattering_without(bounded(water.y, 1.0), lighting.forward);
         float front = puff_front(water.x * scaled.depth) * ball.w;
         vec3 place = ball.xyz - ahead * min(front / lighting.sigmas, reach);
         vec3 right = puff_right(ahead) * (0.5 * ball.w);

@@ -42,7 +42,7 @@ vec4 kernel_vertex(uint index) {
     puff_radiance light = lights[number];
     float hidden = air_between(lighting.air, away);
     vec3 own = light.middle.xyz + light.right.xyz * u + light.up.xyz * v;
-    scaled_scattering scaled = scattering_without(water.y, lighting.forward);
+    scaled_scattering scaled = scattering_without(bounded(water.y, 1.0), lighting.forward);
     varying_out[0] = vec4(u, v, water.x * scaled.depth, 0.0);
     varying_out[1] = vec4(own * (1.0 - hidden), 0.0);
     varying_out[2] = vec4(light.air.xyz * hidden, 0.0);

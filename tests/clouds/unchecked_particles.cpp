@@ -86,28 +86,32 @@ class unchecked_particles : public testing::TestWithParam<const char*> {};
 
 TEST_P(unchecked_particles, add_nothing_to_the_volume) {
     with_device(GetParam(), [](auto& device) {
-        const auto box = fit_light_box(good_ones(), slanting, voxels).value();
-        for (const attenuation_options& way : ways()) {
-            const auto expected = lit(device, good_ones(), box, way);
-            EXPECT_GT(*std::max_element(expected.begin(), expected.end()), 1.0f);
-            EXPECT_EQ(lit(device, all_of_them(), box, way), expected);
+        for (const glm::vec3 to_sun : {slanting, glm::vec3(0, 1, 0)}) {
+            const auto box = fit_light_box(good_ones(), to_sun, voxels).value();
+            for (const attenuation_options& way : ways()) {
+                const auto expected = lit(device, good_ones(), box, way);
+                EXPECT_GT(*std::max_element(expected.begin(), expected.end()), 1.0f);
+                EXPECT_EQ(lit(device, all_of_them(), box, way), expected);
+            }
         }
     });
 }
 
+/// What Harris's pass finds at each particle.
+template <class B>
+std::vector<float> by_harris(B& device, const std::vector<cloud_particle>& particles) {
+    const auto box = fit_light_box(good_ones(), slanting, voxels).value();
+    const auto count = static_cast<std::uint32_t>(particles.size());
+    auto harris = harris_light<B>::create(device, voxels.x, voxels.z, count, {3.0f, 0.05f}).value();
+    const auto sent = make_buffer<B, cloud_particle>(device, std::span(particles)).value();
+    EXPECT_TRUE(harris.relight(view<B>(sent), count, box));
+    return {harris.lights().begin(), harris.lights().end()};
+}
+
 TEST_P(unchecked_particles, take_no_light_from_others_in_harris_pass) {
     with_device(GetParam(), [](auto& device) {
-        using B = std::remove_reference_t<decltype(device)>;
-        const auto box = fit_light_box(good_ones(), slanting, voxels).value();
-        const auto lights = [&](const std::vector<cloud_particle>& particles) {
-            const auto count = static_cast<std::uint32_t>(particles.size());
-            auto harris = harris_light<B>::create(device, voxels.x, voxels.z, count).value();
-            const auto sent = make_buffer<B, cloud_particle>(device, std::span(particles)).value();
-            EXPECT_TRUE(harris.relight(view<B>(sent), count, box));
-            return std::vector<float>(harris.lights().begin(), harris.lights().end());
-        };
-        const auto expected = lights(good_ones());
-        const auto found = lights(all_of_them());
+        const auto expected = by_harris(device, good_ones());
+        const auto found = by_harris(device, all_of_them());
         for (std::size_t i = 0; i < expected.size(); ++i) {
             EXPECT_EQ(found[i + 10], expected[i]) << i;
         }
@@ -172,6 +176,48 @@ TEST_P(unchecked_particles, without_a_place_or_a_radius_are_not_seen) {
                 most = std::max(most, expected[i].w);
             }
             EXPECT_GT(most, 0.5f);
+        }
+    });
+}
+
+/// The ball with the albedos of some of it changed: an albedo and what it counts as.
+std::vector<cloud_particle> with_albedos(std::span<const float> albedos) {
+    auto particles = good_ones();
+    for (std::size_t i = 0; i < particles.size(); i += 2) {
+        particles[i].albedo = albedos[i / 2 % albedos.size()];
+    }
+    return particles;
+}
+
+TEST_P(unchecked_particles, albedos_count_as_those_that_there_are) {
+    with_device(GetParam(), [](auto& device) {
+        constexpr float wrong[] = {5, -2, 1e30f, -0.1f, 1.01f, -3e38f};
+        constexpr float right[] = {1, 0, 1, 0, 1, 0};
+        const auto unchecked = with_albedos(wrong);
+        const auto checked = with_albedos(right);
+        EXPECT_EQ(by_harris(device, unchecked), by_harris(device, checked));
+        EXPECT_NE(by_harris(device, good_ones()), by_harris(device, checked));
+        for (const bool torn : {false, true}) {
+            const auto expected = drawn(device, checked, torn);
+            EXPECT_EQ(drawn(device, unchecked, torn), expected) << (torn ? "torn" : "lit");
+            EXPECT_NE(drawn(device, good_ones(), torn), expected);
+        }
+    });
+}
+
+// One that is no number is none of them for the light, as relight has it; nothing of such a
+// particle is drawn.
+TEST_P(unchecked_particles, albedos_that_are_no_numbers_scatter_nothing) {
+    with_device(GetParam(), [](auto& device) {
+        constexpr float wrong[] = {std::numeric_limits<float>::quiet_NaN()};
+        constexpr float right[] = {0};
+        const auto unchecked = with_albedos(wrong);
+        EXPECT_EQ(by_harris(device, unchecked), by_harris(device, with_albedos(right)));
+        for (const bool torn : {false, true}) {
+            for (const glm::vec4& pixel : drawn(device, unchecked, torn)) {
+                const float sum = pixel.x + pixel.y + pixel.z + pixel.w;
+                EXPECT_TRUE(std::isfinite(sum)) << (torn ? "torn" : "lit");
+            }
         }
     });
 }

@@ -31,6 +31,7 @@ struct program<kernels::harris_splat> : plain_program<kernels::harris_splat> {
         const int left = first(cells.x, shared::holdable(p.radius / grid.voxel.x));
         const int bottom = std::min(top + static_cast<int>(k.side), static_cast<int>(k.rows));
         const int right = std::min(left + static_cast<int>(k.side), static_cast<int>(k.columns));
+        const float albedo = shared::bounded(p.albedo, 1.0f);
         std::array<float, most_columns + 8> depths;
         for (int z = std::max(top, 0); z < bottom; ++z) {
             const float dz = (static_cast<float>(z) + 0.5f - cells.z) * grid.voxel.z;
@@ -46,7 +47,7 @@ struct program<kernels::harris_splat> : plain_program<kernels::harris_splat> {
                     const auto at =
                         static_cast<std::size_t>(z) * k.columns + static_cast<std::size_t>(x);
                     after[at] = shared::exp_minus(depth) * before[at] +
-                                p.albedo * depth * k.forward * k.incoming;
+                                albedo * depth * k.forward * k.incoming;
                 }
             }
         }

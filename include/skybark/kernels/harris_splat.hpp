@@ -9,7 +9,8 @@ namespace skybark::kernels {
 
 /// What comes through the k-th particle, and what it scatters forward of the light that was read
 /// back for it. An element is a pixel of a square around the particle. Buffers: particles; their
-/// order; the light buffer, before and after (one buffer may be both).
+/// order; the light buffer, before and after (one buffer may be both). An albedo that is no number
+/// or below 0 counts as 0, one above 1 as 1.
 struct harris_splat {
     using buffers = buffer_list<readonly<cloud_particle>, readonly<std::uint32_t>, readonly<float>,
                                 writeonly<float>>;
@@ -42,8 +43,8 @@ struct harris_splat {
         if (depth > 0) {
             const std::uint32_t at =
                 static_cast<std::uint32_t>(z) * columns + static_cast<std::uint32_t>(x);
-            after[at] =
-                shared::exp_minus(depth) * before[at] + p.albedo * depth * forward * incoming;
+            after[at] = shared::exp_minus(depth) * before[at] +
+                        shared::bounded(p.albedo, 1.0f) * depth * forward * incoming;
         }
     }
 

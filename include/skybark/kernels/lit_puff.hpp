@@ -21,7 +21,7 @@ namespace skybark::kernels {
 /// its billboard is; what is left is lit as it would be.
 ///
 /// A particle with a number that is infinite or none, or whose radius or depth is not above 0, is
-/// not drawn.
+/// not drawn. An albedo below 0 counts as 0, one above 1 as 1.
 ///
 /// A particle that the eye is in, or nearly, covers the screen, and shows what of it lies before
 /// the eye. What is behind the eye isn't drawn.
@@ -70,7 +70,8 @@ struct lit_puff {
         const glm::vec3 air = lighting[0].air > 0.0f && away > 0.0f
                                   ? shared::sky_radiance(scene[0].sky, c * (1.0f / away))
                                   : glm::vec3(0);
-        const auto scaled = shared::scattering_without(p.albedo, lighting[0].forward);
+        const auto scaled =
+            shared::scattering_without(shared::bounded(p.albedo, 1.0f), lighting[0].forward);
         out[0] = glm::vec4(at.offset, p.optical_depth * scaled.depth);
         out[1] = glm::vec4(c, p.radius);
         out[2] = glm::vec4(air, 0);

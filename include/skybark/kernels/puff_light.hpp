@@ -11,7 +11,8 @@ static_assert(sizeof(shared::puff_radiance) == 64);
 
 /// Maps over particles. Buffers: particles, one scene, one lighting, lights (one puff_radiance a
 /// particle). Volumes as lit_puff has them. The light is lit_puff's at the middle of the particle's
-/// front, and its slope that between places half a radius to each side.
+/// front, and its slope that between places half a radius to each side. An albedo that is no number
+/// or below 0 counts as 0, one above 1 as 1.
 struct puff_light {
     using buffers = buffer_list<readonly<cloud_particle>, readonly<scene_record>,
                                 readonly<cloud_lighting>, writeonly<shared::puff_radiance>>;
@@ -29,7 +30,8 @@ struct puff_light {
             const cloud_lighting& how = lighting[0];
             const reader<Grids> from{grids};
             const glm::vec3 ahead = away * (1.0f / distance);
-            const auto scaled = shared::scattering_without(p.albedo, how.forward);
+            const auto scaled =
+                shared::scattering_without(shared::bounded(p.albedo, 1.0f), how.forward);
             const float front = shared::puff_front(p.optical_depth * scaled.depth) * p.radius;
             const glm::vec3 place = p.position - ahead * glm::min(front / how.sigmas, distance);
             const auto light = [&](glm::vec3 aside) {

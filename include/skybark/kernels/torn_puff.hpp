@@ -17,7 +17,7 @@ namespace skybark::kernels {
 /// lighting.
 ///
 /// A particle with a number that is infinite or none, or whose radius or depth is not above 0, is
-/// not drawn.
+/// not drawn. An albedo below 0 counts as 0, one above 1 as 1.
 ///
 /// For clouds that are looked at from outside: a particle that the eye is in, or nearly, and what
 /// is behind it, is not drawn.
@@ -60,7 +60,8 @@ struct torn_puff {
         const float hidden = shared::air_between(lighting[0].air, away);
         const glm::vec3 own =
             glm::vec3(light.middle) + glm::vec3(light.right) * u + glm::vec3(light.up) * v;
-        const auto scaled = shared::scattering_without(p.albedo, lighting[0].forward);
+        const auto scaled =
+            shared::scattering_without(shared::bounded(p.albedo, 1.0f), lighting[0].forward);
         out[0] = glm::vec4(u, v, p.optical_depth * scaled.depth, 0.0f);
         out[1] = glm::vec4(own * (1.0f - hidden), 0.0f);
         out[2] = glm::vec4(glm::vec3(light.air) * hidden, 0.0f);

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 7c23bff274598e72c659555ea5c2e2de605b77ebd8cf8a74cbc045be01c0f54d
+// sha256 8f83ec6b88ce5beeb757e3f7173c37f26fefc7486ad209dde783d8d9522d2c1a
 #pragma once
 
 #include <skybark/kernels/harris_splat.hpp>
@@ -242,7 +242,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -314,7 +314,7 @@ float dz = (float(z) + 0.5 - cells.z) * grid.voxel.z;
 float depth = particle_attenuation(p, dx * dx + dz * dz, sigmas, 0u, 0.0);
 if (depth > 0.0) {
 uint at = uint(z) * columns + uint(x);
-after[at] = exp_minus(depth) * before[at] + p.albedo * depth * forward * incoming;
+after[at] = exp_minus(depth) * before[at] + bounded(p.albedo, 1.0) * depth * forward * incoming;
 }
 }
 layout(std430, binding = 10) readonly buffer skybark_length_buffer { uint skybark_length[]; };
@@ -329,7 +329,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 8664};
+)glsl", 8669};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -564,7 +564,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -636,7 +636,7 @@ float dz = (float(z) + 0.5 - cells.z) * grid.voxel.z;
 float depth = particle_attenuation(p, dx * dx + dz * dz, sigmas, 0u, 0.0);
 if (depth > 0.0) {
 uint at = uint(z) * columns + uint(x);
-after[at] = exp_minus(depth) * before[at] + p.albedo * depth * forward * incoming;
+after[at] = exp_minus(depth) * before[at] + bounded(p.albedo, 1.0) * depth * forward * incoming;
 }
 }
 layout(std430, binding = 11) readonly buffer skybark_ranges_buffer { uvec2 skybark_ranges[]; };
@@ -650,7 +650,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 8679};
+)glsl", 8684};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 ccd55df496bd43f867d08c5fb60f886feba19afdfc7990819c00670edc8a1f4f
+// sha256 32b40e1cf07bf76905cefd92620dd663891766e10baf536bec001a5fbb5bc478
 #pragma once
 
 #include <skybark/kernels/lit_puff.hpp>
@@ -360,7 +360,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -677,7 +677,7 @@ if (lighting.air > 0.0 && away > 0.0) {
 air = sky_radiance(scene.sky, c * (1.0 / away));
 }
 varying_out[1] = vec4(c, radius);
-scaled_scattering scaled = scattering_without(water.y, lighting.forward);
+scaled_scattering scaled = scattering_without(bounded(water.y, 1.0), lighting.forward);
 varying_out[2] = vec4(air, 0.0);
 varying_out[3] = vec4(lighting.by_particle != 0u ? light[number] : -1.0, scaled.single,
 scaled.diffuse, 0.0);
@@ -730,7 +730,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 22775};
+)glsl", 22780};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1081,7 +1081,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -1398,7 +1398,7 @@ if (lighting.air > 0.0 && away > 0.0) {
 air = sky_radiance(scene.sky, c * (1.0 / away));
 }
 varying_out[1] = vec4(c, radius);
-scaled_scattering scaled = scattering_without(water.y, lighting.forward);
+scaled_scattering scaled = scattering_without(bounded(water.y, 1.0), lighting.forward);
 varying_out[2] = vec4(air, 0.0);
 varying_out[3] = vec4(lighting.by_particle != 0u ? light[number] : -1.0, scaled.single,
 scaled.diffuse, 0.0);
@@ -1455,7 +1455,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 22788};
+)glsl", 22793};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 7f3fd7d01cce25906a5557b316b41091adfb00554621b7172b77b107e028ba75
+// sha256 2f5fddc3bff24d511fd2baf6664a612d093c782f853d5aeb5d07d3b05c9230af
 #pragma once
 
 #include <skybark/kernels/puff_light.hpp>
@@ -360,7 +360,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -670,7 +670,7 @@ vec3 away = ball.xyz - scene.camera.xyz;
 float reach = sqrt(dot(away, away));
 if (water.x > 0.0 && ball.w > 0.0 && reach > 0.0) {
 vec3 ahead = away * (1.0 / reach);
-scaled_scattering scaled = scattering_without(water.y, lighting.forward);
+scaled_scattering scaled = scattering_without(bounded(water.y, 1.0), lighting.forward);
 float front = puff_front(water.x * scaled.depth) * ball.w;
 vec3 place = ball.xyz - ahead * min(front / lighting.sigmas, reach);
 vec3 right = puff_right(ahead) * (0.5 * ball.w);
@@ -701,7 +701,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 21671};
+)glsl", 21676};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -1054,7 +1054,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -1364,7 +1364,7 @@ vec3 away = ball.xyz - scene.camera.xyz;
 float reach = sqrt(dot(away, away));
 if (water.x > 0.0 && ball.w > 0.0 && reach > 0.0) {
 vec3 ahead = away * (1.0 / reach);
-scaled_scattering scaled = scattering_without(water.y, lighting.forward);
+scaled_scattering scaled = scattering_without(bounded(water.y, 1.0), lighting.forward);
 float front = puff_front(water.x * scaled.depth) * ball.w;
 vec3 place = ball.xyz - ahead * min(front / lighting.sigmas, reach);
 vec3 right = puff_right(ahead) * (0.5 * ball.w);
@@ -1394,7 +1394,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 21686};
+)glsl", 21691};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 455cefe1ca5f3836ed0062d9bb12720ac30ac6d8be837e094357beac871f5fb3
+// sha256 c192041f89e60d5c144565ab7c2dfdec2d4f93442b11aec91e46d326cd9c0d98
 #pragma once
 
 #include <skybark/kernels/torn_puff.hpp>
@@ -360,7 +360,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -658,7 +658,7 @@ float v = y * corner.over;
 puff_radiance light = lights[number];
 float hidden = air_between(lighting.air, away);
 vec3 own = light.middle.xyz + light.right.xyz * u + light.up.xyz * v;
-scaled_scattering scaled = scattering_without(water.y, lighting.forward);
+scaled_scattering scaled = scattering_without(bounded(water.y, 1.0), lighting.forward);
 varying_out[0] = vec4(u, v, water.x * scaled.depth, 0.0);
 varying_out[1] = vec4(own * (1.0 - hidden), 0.0);
 varying_out[2] = vec4(light.air.xyz * hidden, 0.0);
@@ -691,7 +691,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 21042};
+)glsl", 21047};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1042,7 +1042,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -1340,7 +1340,7 @@ float v = y * corner.over;
 puff_radiance light = lights[number];
 float hidden = air_between(lighting.air, away);
 vec3 own = light.middle.xyz + light.right.xyz * u + light.up.xyz * v;
-scaled_scattering scaled = scattering_without(water.y, lighting.forward);
+scaled_scattering scaled = scattering_without(bounded(water.y, 1.0), lighting.forward);
 varying_out[0] = vec4(u, v, water.x * scaled.depth, 0.0);
 varying_out[1] = vec4(own * (1.0 - hidden), 0.0);
 varying_out[2] = vec4(light.air.xyz * hidden, 0.0);
@@ -1377,7 +1377,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 21055};
+)glsl", 21060};
 };
 
 } // namespace skybark::opengl
