@@ -95,11 +95,11 @@ vec3 place_of(light_grid grid, vec3 cells)
         grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 
-// A length or a coordinate in voxels as an int can hold it, of particles that nobody has checked:
-// what is no number lies a million voxels below, outside of every grid.
+// A coordinate or a radius in voxels as an int can hold it, of particles that nobody has checked:
+// what is no number, or beyond any grid, lies a million voxels below it, where it adds nothing.
 float holdable(float cells)
 {
-    return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+    return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {

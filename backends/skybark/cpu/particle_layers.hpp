@@ -495,8 +495,12 @@ class particle_bins {
             std::sqrt(std::max(p.radius2 * 1.000002f - dz2, 0.0f)) * shades_.inverse_width;
         const std::int32_t left = std::max(static_cast<std::int32_t>(p.x - reach + 0.49f), 0);
         const std::int32_t right = std::min(static_cast<std::int32_t>(p.x + reach + 0.51f), width_);
-        const std::int32_t width = std::max((right - left + 7) / 8 * 8, 0);
-        return {std::min(left, width_ - width), static_cast<std::uint32_t>(width) / 8};
+        const std::uint32_t vectors = static_cast<std::uint32_t>(std::max(right - left + 7, 0)) / 8;
+        // Widened by rounding it may be one eight more than anywhere, for which a row has no room.
+        if (vectors >= p.vectors) {
+            return {p.start, p.vectors};
+        }
+        return {std::min(left, width_ - 8 * static_cast<std::int32_t>(vectors)), vectors};
     }
 
     slab_bins<K, particles_span> plain_;

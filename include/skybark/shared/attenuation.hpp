@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 cfeb3c21d7a55333a8b7bfe95d96cbd685c7db42d5a16fd15066e3722b9e9077
+// sha256 cdc4c913faaf3b4f541182049878a8fb8e1680a19d517346a14fbf3d78240fd1
 #pragma once
 
 #include <skybark/shared/glsl.hpp>
@@ -103,11 +103,11 @@ inline vec3 place_of(light_grid grid, vec3 cells)
         grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 
-// A length or a coordinate in voxels as an int can hold it, of particles that nobody has checked:
-// what is no number lies a million voxels below, outside of every grid.
+// A coordinate or a radius in voxels as an int can hold it, of particles that nobody has checked:
+// what is no number, or beyond any grid, lies a million voxels below it, where it adds nothing.
 inline float holdable(float cells)
 {
-    return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+    return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 inline vec3 holdable_cells_of(light_grid grid, vec3 place)
 {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b99bfdb9a8cac9da34dd96026405138a1f002f27349c945130c3ca3d88ea4f4d
+// sha256 7ba2be07cb5a568a910053ee8659341c104b551f1fadbcd8f59202a07e8aec76
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>
@@ -242,7 +242,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -429,7 +429,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 11297};
+)glsl", 11288};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -664,7 +664,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -850,7 +850,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 11312};
+)glsl", 11303};
 };
 
 } // namespace skybark::opengl

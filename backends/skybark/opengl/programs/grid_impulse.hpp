@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 5cf177ae3ac58a8804a98566b15e9e4098c99f9642c5b803a0ab303efd60f2a3
+// sha256 670e84a96e4bdf99c5b037b170ce977f32d6b24dd53cf2ed4e9d3b0f92f610f1
 #pragma once
 
 #include <skybark/kernels/grid_impulse.hpp>
@@ -244,7 +244,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -314,7 +314,7 @@ if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
 kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
 }
-)glsl", 7828};
+)glsl", 7819};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0f54be810d7d0549f6a1d164ad6ead447a95de5924b9dc0fb5d2e0cb7393f9a3
+// sha256 d2c20105ced5651a6459beecdaf9582d0c419f033771f01a1592b8b2170f9f1c
 #pragma once
 
 #include <skybark/kernels/harris_order.hpp>
@@ -242,7 +242,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -321,7 +321,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 7926};
+)glsl", 7917};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -556,7 +556,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -634,7 +634,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 7941};
+)glsl", 7932};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 aea0dcc5a27138d3160df9327994561811a2cb288f14a2191f195606fae40d8d
+// sha256 2a1f43de46958999675b471adbb544bbb9486c02284bd45edabc6e93b1a2033a
 #pragma once
 
 #include <skybark/kernels/harris_read.hpp>
@@ -242,7 +242,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -315,7 +315,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 7990};
+)glsl", 7981};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -550,7 +550,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -622,7 +622,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 8005};
+)glsl", 7996};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 bdf98b297719c45aeab878fd872486c06094eea17fd3e6b14c315e2e7ec59856
+// sha256 be037793e245920ae3da55adaf91ae28a8b7278242ee8b3ca1e5b1978b2d109e
 #pragma once
 
 #include <skybark/kernels/light_at_points.hpp>
@@ -243,7 +243,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -378,7 +378,7 @@ if (i < skybark_elements()) {
 kernel_map(skybark_header.x + i);
 }
 }
-)glsl", 10434};
+)glsl", 10425};
     static constexpr std::string_view levels_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define readonly coherent readonly
@@ -614,7 +614,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -748,7 +748,7 @@ memoryBarrierBuffer();
 barrier();
 }
 }
-)glsl", 10449};
+)glsl", 10440};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 e8ce8e283f5246ea789e6f1142bad1e9471dbdeda166bfef76b6aa45a79dc8b1
+// sha256 36f71c4e98d770fcd55e71b47064c18270666bc1f4369a02db832941e1a8979e
 #pragma once
 
 #include <skybark/kernels/meadow_bark.hpp>
@@ -363,7 +363,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -859,7 +859,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 28398};
+)glsl", 28389};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1213,7 +1213,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -1713,7 +1713,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 28411};
+)glsl", 28402};
 };
 
 } // namespace skybark::opengl

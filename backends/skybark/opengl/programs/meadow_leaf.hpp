@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 9e091b2daafbe870c2b6800873ffcda2ff1087309cbf164478f1cc4fe0844fb2
+// sha256 3634370efafda11ae2e5b5eec9c29a450ca2ab65ffc9c563f0c189ab5a33a4f1
 #pragma once
 
 #include <skybark/kernels/meadow_leaf.hpp>
@@ -362,7 +362,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -860,7 +860,7 @@ return true;
 }
 #endif
 void main() { gl_Position = kernel_vertex(uint(SKYBARK_VERTEX_INDEX)); }
-)glsl", 28268};
+)glsl", 28259};
     static constexpr std::string_view draw_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_FRAGMENT_STAGE
@@ -1213,7 +1213,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -1715,7 +1715,7 @@ if (!kernel_fragment(gl_FragCoord.xy, gl_FrontFacing)) {
 discard;
 }
 }
-)glsl", 28281};
+)glsl", 28272};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 7f1a2e9bc1ddea6380e7dfbc4f1aa1860650f3435b24c5825d48103f6032f284
+// sha256 63bf932c16351734b9e7f01ff7b6cabb393c947cdf7674aa4372ea2c39ba62a8
 #pragma once
 
 #include <skybark/kernels/scatter_limit.hpp>
@@ -87,13 +87,13 @@ return moment * beam * (here + beyond) / (w_here + w_beyond);
 }
 float scatter_load(int n, ivec3 at) { return texelFetch(kernel_volumes[n], at, 0).x; }
 ivec3 scatter_size(int n) { return textureSize(kernel_volumes[n], 0); }
-ivec3 first_child(ivec3 parent, ivec3 size) {
-return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
-size.z > 1 ? 2 * parent.z : 0);
+ivec3 halved_axes(uint axes, ivec3 size) {
+return ivec3(size.x > 1 ? int(axes & 1u) : 0, size.y > 1 ? int(axes >> 1u & 1u) : 0,
+size.z > 1 ? int(axes >> 2u & 1u) : 0);
 }
-ivec3 child_of(ivec3 first, int which, ivec3 size) {
-return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
-size.z > 1 ? first.z + (which >> 2) : 0);
+ivec3 first_child(ivec3 parent, ivec3 halved) { return parent * (1 + halved); }
+ivec3 child_of(ivec3 first, int which, ivec3 halved) {
+return first + ivec3(which & 1, which >> 1 & 1, which >> 2) * halved;
 }
 ivec3 held(ivec3 at, ivec3 size) { return min(at, size - 1); }
 bool within(ivec3 at, ivec3 size) { return all(lessThan(at, size)); }
@@ -126,7 +126,7 @@ if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
 kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
 }
-)glsl", 4292};
+)glsl", 4317};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 145fc2731c5c158dedc13589581c2d71d676ef98ae25be84943f4d04a812d3f2
+// sha256 e21862f1609cce5c361b4502b2a2c3d1fbb334b6a428536848ad32f68977c7f1
 #pragma once
 
 #include <skybark/kernels/scatter_medium.hpp>
@@ -244,7 +244,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -297,13 +297,13 @@ return int(floor(amount + 0.5f));
 }
 float scatter_load(int n, ivec3 at) { return texelFetch(kernel_volumes[n], at, 0).x; }
 ivec3 scatter_size(int n) { return textureSize(kernel_volumes[n], 0); }
-ivec3 first_child(ivec3 parent, ivec3 size) {
-return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
-size.z > 1 ? 2 * parent.z : 0);
+ivec3 halved_axes(uint axes, ivec3 size) {
+return ivec3(size.x > 1 ? int(axes & 1u) : 0, size.y > 1 ? int(axes >> 1u & 1u) : 0,
+size.z > 1 ? int(axes >> 2u & 1u) : 0);
 }
-ivec3 child_of(ivec3 first, int which, ivec3 size) {
-return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
-size.z > 1 ? first.z + (which >> 2) : 0);
+ivec3 first_child(ivec3 parent, ivec3 halved) { return parent * (1 + halved); }
+ivec3 child_of(ivec3 first, int which, ivec3 halved) {
+return first + ivec3(which & 1, which >> 1 & 1, which >> 2) * halved;
 }
 ivec3 held(ivec3 at, ivec3 size) { return min(at, size - 1); }
 bool within(ivec3 at, ivec3 size) { return all(lessThan(at, size)); }
@@ -336,7 +336,7 @@ if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
 kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
 }
-)glsl", 8619};
+)glsl", 8635};
 };
 
 } // namespace skybark::opengl

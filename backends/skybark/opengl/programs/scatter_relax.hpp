@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 7ec68cca1105205ba69eabd45018eb8122882843ad5c125787f47b0bd9a4b697
+// sha256 9018b4d5c97a94e885f59a038b895b44304652fb4b27b57cb5bbcb7838ad9c2a
 #pragma once
 
 #include <skybark/kernels/scatter_relax.hpp>
@@ -88,13 +88,13 @@ return moment * beam * (here + beyond) / (w_here + w_beyond);
 }
 float scatter_load(int n, ivec3 at) { return texelFetch(kernel_volumes[n], at, 0).x; }
 ivec3 scatter_size(int n) { return textureSize(kernel_volumes[n], 0); }
-ivec3 first_child(ivec3 parent, ivec3 size) {
-return ivec3(size.x > 1 ? 2 * parent.x : 0, size.y > 1 ? 2 * parent.y : 0,
-size.z > 1 ? 2 * parent.z : 0);
+ivec3 halved_axes(uint axes, ivec3 size) {
+return ivec3(size.x > 1 ? int(axes & 1u) : 0, size.y > 1 ? int(axes >> 1u & 1u) : 0,
+size.z > 1 ? int(axes >> 2u & 1u) : 0);
 }
-ivec3 child_of(ivec3 first, int which, ivec3 size) {
-return ivec3(size.x > 1 ? first.x + (which & 1) : 0, size.y > 1 ? first.y + ((which >> 1) & 1) : 0,
-size.z > 1 ? first.z + (which >> 2) : 0);
+ivec3 first_child(ivec3 parent, ivec3 halved) { return parent * (1 + halved); }
+ivec3 child_of(ivec3 first, int which, ivec3 halved) {
+return first + ivec3(which & 1, which >> 1 & 1, which >> 2) * halved;
 }
 ivec3 held(ivec3 at, ivec3 size) { return min(at, size - 1); }
 bool within(ivec3 at, ivec3 size) { return all(lessThan(at, size)); }
@@ -126,7 +126,7 @@ if (all(lessThan(gl_GlobalInvocationID, skybark_header.xyz))) {
 kernel_voxel(ivec3(gl_GlobalInvocationID));
 }
 }
-)glsl", 4519};
+)glsl", 4544};
 };
 
 } // namespace skybark::opengl

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 7679ed58ffb86b24a73ce6bcb3d22607eb305ba91518fb9eee67ec654f67e11e
+// sha256 3bfec47af33049368b06ecb8eeaa17cfe90871e94813c69c40fce9967f7c545b
 #pragma once
 
 #include <skybark/kernels/shadow_slab.hpp>
@@ -247,7 +247,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -405,7 +405,7 @@ for (; strip < last; ++strip) {
 skybark_run(skybark_header.x + element, strip, first, count);
 }
 }
-)glsl", 11110};
+)glsl", 11101};
     static constexpr std::string_view accumulate_comp{R"glsl(#version 450
 #define SKYBARK_OPENGL
 #define SKYBARK_COMPUTE_STAGE
@@ -643,7 +643,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -807,7 +807,7 @@ for (uint s = first + slot; s < last; s += gl_WorkGroupSize.x / lanes) {
 skybark_add(i, s, int(column), int(lanes * sharing), size);
 }
 }
-)glsl", 11601};
+)glsl", 11592};
     static constexpr std::string_view slabs_vert{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1039,7 +1039,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -1192,7 +1192,7 @@ slab = skybark_visible(i, s);
 skybark_cell = ivec2(i, slab.slice);
 gl_Position = skybark_corner(slab, corners[uint(gl_VertexID) - rectangle * 6u]);
 }
-)glsl", 11071};
+)glsl", 11062};
     static constexpr std::string_view slabs_geom{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1424,7 +1424,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -1593,7 +1593,7 @@ skybark_emit(i, slab);
 }
 }
 }
-)glsl", 11563};
+)glsl", 11554};
     static constexpr std::string_view slabs_frag{R"glsl(#version 450
 #define SKYBARK_OPENGL
 struct surface_vertex {
@@ -1825,7 +1825,7 @@ grid.anchor.z + grid.row_x.z * x + grid.row_y.z * y + grid.row_z.z * z);
 }
 float holdable(float cells)
 {
-return cells > -1.0e6f ? min(cells, 1.0e6f) : -1.0e6f;
+return abs(cells) < 1.0e6f ? cells : -1.0e6f;
 }
 vec3 holdable_cells_of(light_grid grid, vec3 place)
 {
@@ -1971,7 +1971,7 @@ int low = amount & 255;
 int carry = low >> 7;
 skybark_amount = vec2(float((amount >> 8) + carry), float(low - 256 * carry));
 }
-)glsl", 10915};
+)glsl", 10906};
 };
 
 } // namespace skybark::opengl

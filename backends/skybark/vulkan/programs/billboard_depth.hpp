@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 44592889e6521ac9757bc828c16cdeed09c175c0f67f525c929bccb935cd824d
+// sha256 7f4e97107f88e8ad70d32d45a55302aff611fbb285d35189fbc93f2bcc1c8e4d
 #pragma once
 
 #include <skybark/kernels/billboard_depth.hpp>

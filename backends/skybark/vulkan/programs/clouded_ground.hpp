@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 a2f8b6e77f4b01fdc67f49e2e2a38e4070a26c97ead079f75233eba81cb6e16d
+// sha256 1f32ea78d3551f8548a5a0e9f3ae61b8cefa5b4bc09fbc82a80e78b50887214b
 #pragma once
 
 #include <skybark/kernels/clouded_ground.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b40cbe0c7a9b63783f3b0e3060364ea59a0b1a48c5e383998b4221097fe8459a
+// sha256 529585d33c6025a087b2adcbb9b54dafc6ad31c3430c0ccc8bc037a3c55df59e
 #pragma once
 
 #include <skybark/kernels/grid_impulse.hpp>

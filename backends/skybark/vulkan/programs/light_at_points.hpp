@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0e5099b565866d7d916e31f3808c03e14023d71a864c94d324887c72a63a1492
+// sha256 bffa64f19ea76ed32d90a5e8d508b51e025124d638b6b0f0e6ca68909e4196c5
 #pragma once
 
 #include <skybark/kernels/light_at_points.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 44f9eb0c94c82140602ff285121ce9f7189e416e07c588ca802877f4403ee8c5
+// sha256 94f06872a96bc75c865ac6da41e4187f4c3a0999ef087d2e4b5be3de30e4a693
 #pragma once
 
 #include <skybark/kernels/lit_grid.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 fae9ca399058f704da2e797baee91736a615ee2e5f453e63984d3a58b73bc4d0
+// sha256 8a7a7ca2b7ba3c5a8f4d0080e4bdf2a4733a146d7cfd184e08fa712a2e7df902
 #pragma once
 
 #include <skybark/kernels/meadow_bark.hpp>

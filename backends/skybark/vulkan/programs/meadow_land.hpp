@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 635b8b7daabd35b373ad73fffafb0f49328907dc21421a28353f143480e2585f
+// sha256 e515f9c2b1a0eec3d95f832d53e43b9902e7032160a9afa97fa10a66c3f4e4ac
 #pragma once
 
 #include <skybark/kernels/meadow_land.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 efd8ca6dfd46edc826903ffdfa7f46980fa4289ed31950768e67c5c0b2c4cd0d
+// sha256 bfc2de3a17528061d69d4dede407899ba9bcb9983c9cf9640126ec43b85bc95b
 #pragma once
 
 #include <skybark/kernels/meadow_leaf.hpp>

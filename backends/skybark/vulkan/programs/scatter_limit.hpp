@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 91cf36ac46b8617e34bf5258ccb5934bf1dcfc3bf1276fdd3b3007212fb7ba43
+// sha256 653791d702ba4d9b0414d8607c1941ecc03e01e2d301d1c8473d2ab0bf0c61dc
 #pragma once
 
 #include <skybark/kernels/scatter_limit.hpp>

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0c648e3893894901081846979e1ad32b3452e2e310c80e2bc42faf725114b2ee
+// sha256 989225df98b6ebb9f28b3a7fbb6887aec5b48f9bd048f8906108056937f3024a
 #pragma once
 
 #include <skybark/kernels/scatter_medium.hpp>

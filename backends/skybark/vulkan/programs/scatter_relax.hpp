@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 22032e0c657227164969fa3f5a9e330b3ff24945ffc2a389f929dd01b8e3d1bb
+// sha256 e114b32fa7e810994e01093a45c4b1baa6423d0b5c93c6b4bc718d880d71e0b9
 #pragma once
 
 #include <skybark/kernels/scatter_relax.hpp>

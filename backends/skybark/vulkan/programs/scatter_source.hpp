@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 22785166c41c3de0b2dc57e6e7455917cd77b18abc9f50ecd7874b752d36921b
+// sha256 c15941ed90f8d7962dd69f29288cf184c00954c46159f9b26dc478f2ffe4ff0a
 #pragma once
 
 #include <skybark/kernels/scatter_source.hpp>
