@@ -201,6 +201,18 @@ TEST(senseless_harris, options_and_counts_that_make_no_light) {
     EXPECT_TRUE(refused(made::create(device, 16385, 64, 10), "16385 x 64"));
 }
 
+TEST(senseless_harris, more_pixels_than_a_buffer_has) {
+    cpu::device_options options;
+    options.limits.max_buffer_bytes = 4 * 64 * 32; // floats
+    cpu::device small(options);
+    using made = harris_light<cpu::device>;
+    EXPECT_TRUE(made::create(small, 64, 32, 10));
+    EXPECT_TRUE(refused(made::create(small, 64, 33, 10), "64 x 33 pixels"));
+    EXPECT_TRUE(refused(made::create(small, 33, 64, 10), "up to 2048 pixels"));
+    EXPECT_TRUE(refused(made::create(small, 16384, 16384, 10), "16384 x 16384"));
+    EXPECT_TRUE(refused(made::create(small, 8, 8, 257), "up to 256")); // of 32 bytes
+}
+
 TEST(senseless_scattering, no_more_halvings_than_there_are) {
     cpu::device device;
     using made = multiple_scattering<cpu::device>;

@@ -32,7 +32,9 @@ requires sorts<B> && maps<B, kernels::harris_order> && maps<B, kernels::harris_r
     maps<B, kernels::harris_splat>
 class harris_light {
   public:
-    /// A light buffer of columns × rows pixels, for up to `most_particles`.
+    /// A light buffer of columns × rows pixels, for up to `most_particles`. Errors: bad_input for
+    /// numbers that make no sense and for more than the device can bind in one buffer; the
+    /// device's.
     [[nodiscard]] static result<harris_light> create(B& device, std::uint32_t columns,
                                                      std::uint32_t rows,
                                                      std::uint32_t most_particles,
@@ -64,8 +66,20 @@ class harris_light {
                             .append(std::to_string(most))
                             .append("."));
         }
-        harris_light made(device, columns, rows, most_particles, options);
         const std::uint64_t pixels = std::uint64_t{columns} * rows;
+        const std::uint64_t most_pixels =
+            std::min(limits.max_buffer_bytes / sizeof(float), limits.max_elements);
+        if (pixels > most_pixels) {
+            return fail(error_code::bad_input,
+                        std::string("A light buffer of ")
+                            .append(std::to_string(columns))
+                            .append(" x ")
+                            .append(std::to_string(rows))
+                            .append(" pixels was asked for; this device binds up to ")
+                            .append(std::to_string(most_pixels))
+                            .append(" pixels."));
+        }
+        harris_light made(device, columns, rows, most_particles, options);
         const std::vector<float> sunlit(pixels, 1.0f);
         auto sun = make_buffer<B, float>(device, sunlit);
         auto light = device.create_buffer(pixels * sizeof(float));
