@@ -74,7 +74,11 @@ TEST(many_particles, of_a_buffer_longer_than_a_view_slow) {
                 expected = values;
                 EXPECT_GT(*std::max_element(values.begin(), values.end()), 0.1f);
             }
-            EXPECT_EQ(values, expected) << name;
+            double worst = 0;
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                worst = std::max(worst, std::abs(double{values[i]} - double{expected[i]}));
+            }
+            EXPECT_LE(worst, 1e-4) << name; // asked for
         });
     }
 }
