@@ -223,6 +223,10 @@ result<void> read_particles(cloud_job& job) {
     if (!particles) {
         return failure(particles.error());
     }
+    if (particles->empty()) {
+        return fail(error_code::bad_input,
+                    io::in_quotes(job.input) + " has no particles; expected one at least.");
+    }
     job.particles = std::move(*particles);
     job.low = glm::vec3(std::numeric_limits<float>::max());
     job.high = -job.low;

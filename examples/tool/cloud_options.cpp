@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <io/text_input.hpp>
+#include <skybark/clouds/cumulus.hpp>
 
 namespace skybark::tool {
 
@@ -10,7 +11,6 @@ namespace {
 constexpr std::uint32_t smallest_volume = 4;
 constexpr std::uint32_t largest_volume = 65536;
 constexpr double most_extinction = 1e6;
-constexpr std::uint32_t most_particles = 10'000'000;
 constexpr std::uint32_t most_octaves = 32;
 
 constexpr named<cloud_method> methods[] = {{"impulse_scan", cloud_method::impulse_scan},
@@ -362,7 +362,7 @@ result<cloud_options> check(const cloud_option_words& words, const cloud_option_
         read("--sigmas", words.sigmas, 0.1, 9, "", volume.sigmas),
         read("--extinction", words.extinction, 0, most_extinction, "1/m", options.extinction),
         read("--albedo", words.albedo, 0, 1, "", options.albedo),
-        read("--particles", words.particles, 1, most_particles, options.particles),
+        read("--particles", words.particles, 1, clouds::most_cumulus_particles, options.particles),
         check_method(words, options),
         check_phase(words, options),
         check_source(words, context.seed, options),

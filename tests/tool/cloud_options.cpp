@@ -106,6 +106,10 @@ TEST(cloud_options, are_what_was_typed) {
     EXPECT_EQ(grid.extinction, 0.045f);
     EXPECT_EQ(grid.albedo, 0.9f);
     EXPECT_EQ(accepted({"--particles", "7"}, {"cumulus", "a.png"}).particles, 7u);
+    for (const char* cloud : {"cumulus", "cumulus_field"}) { // as many as the library makes
+        EXPECT_EQ(accepted({"--particles", "4194304"}, {cloud, "a.png"}).particles, 1u << 22);
+        expect_refused({"--particles", "4194305"}, {"--particles", "4194304"}, {cloud, "a.png"});
+    }
 }
 
 TEST(cloud_options, know_phase_functions) {
@@ -143,7 +147,7 @@ TEST(cloud_options, refuse_numbers_that_are_none) {
         {"--extinction", {"-0.001", "1e7"}},
         {"--albedo", {"-0.001", "1.001"}},
         {"--octaves", {"0", "-1", "33", "2.5"}},
-        {"--particles", {"0", "-1", "10000001", "2.5"}},
+        {"--particles", {"0", "-1", "4194305", "2.5"}},
     };
     for (const auto& [option, own] : all) {
         for (const words& values : {none, own}) {
