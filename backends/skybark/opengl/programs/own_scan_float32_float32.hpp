@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 f3b13808632c9f219b06d0e7ba8c33642aeb244dc8b759651d58c5a25a45c046
+// sha256 36989638f73f6a7921f009a93476a243a8f4c264d40ef12f3354b5f4b4467e93
 #pragma once
 
 #include <string_view>
@@ -67,7 +67,7 @@ float rounded(float value) {
 uint bits = floatBitsToUint(value);
 uint size = bits & 0x7fffffffu;
 if (size >= 0x477ff000u) {
-size = size > 0x7f800000u ? size : 0x7f800000u;
+size = size > 0x7f800000u ? size : 0x477fe000u;
 } else if (size < 0x38800000u) {
 size = floatBitsToUint(roundEven(uintBitsToFloat(size) * 16777216.0) / 16777216.0);
 } else {

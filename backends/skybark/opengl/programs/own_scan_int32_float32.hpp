@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 0ed1a1eef1a8c0d4eae076eea9fa3de52a7cb4ec0d0c2b1460b14d958c21e2d0
+// sha256 05162d704f418474382800b8edb1ad27a76a8f4b7f2941c69471835ee1332726
 #pragma once
 
 #include <string_view>
@@ -67,7 +67,7 @@ float rounded(float value) {
 uint bits = floatBitsToUint(value);
 uint size = bits & 0x7fffffffu;
 if (size >= 0x477ff000u) {
-size = size > 0x7f800000u ? size : 0x7f800000u;
+size = size > 0x7f800000u ? size : 0x477fe000u;
 } else if (size < 0x38800000u) {
 size = floatBitsToUint(roundEven(uintBitsToFloat(size) * 16777216.0) / 16777216.0);
 } else {

@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 a2db994a068377eaed3dd7ff4b716e74d0e8e12adda9045c65211aa73bd9038b
+// sha256 9b15fa67687ca61b8ad329a7c9e084f913837c4e833ef8392095fc7e85d2eee8
 #pragma once
 
 #include <string_view>
@@ -68,7 +68,7 @@ float rounded(float value) {
 uint bits = floatBitsToUint(value);
 uint size = bits & 0x7fffffffu;
 if (size >= 0x477ff000u) {
-size = size > 0x7f800000u ? size : 0x7f800000u;
+size = size > 0x7f800000u ? size : 0x477fe000u;
 } else if (size < 0x38800000u) {
 size = floatBitsToUint(roundEven(uintBitsToFloat(size) * 16777216.0) / 16777216.0);
 } else {

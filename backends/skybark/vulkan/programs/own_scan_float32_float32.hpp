@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 b473d4fb6e86aec9948ec35e7364fc4f6f6850ebec0d23ececde5dc99f5592e5
+// sha256 affed1f497cd73dc98e2da88b7f7ea0b095f9bab236b97f5f60a6393e7bb25d4
 #pragma once
 
 namespace skybark::vulkan {

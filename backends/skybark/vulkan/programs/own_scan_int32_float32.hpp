@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 a79d2496dc9531edf6283a5ad7070cdb76cb953e584300fce4944c0094436804
+// sha256 24969646912b00dce00d1976c78ea89d2f1043caf9e29f40c437c3da476ab11a
 #pragma once
 
 namespace skybark::vulkan {

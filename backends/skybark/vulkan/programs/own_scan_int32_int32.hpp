@@ -1,6 +1,6 @@
 // clang-format off
 // Made by shaders/embed.py. Edit the text in shaders/ instead.
-// sha256 333ca761bfca6186d2ab9e5970179a0f1d4c39192d81a139a6e37fd300652d75
+// sha256 ec4585784363f055ec34ffbe00c9cfaf6f76c4754935cddcb3d8cb650d799ed0
 #pragma once
 
 namespace skybark::vulkan {
