@@ -90,9 +90,9 @@ struct multiple_scattering_options {
     std::uint32_t halvings = 1; ///< the fluence has 2^-halvings of the volume's resolution: 1…4,
                                 ///< and no more than leave a cell
     std::uint32_t cycles = 3;   ///< V-cycles on the finest grid, 1…64
-    glm::vec3 voxel{1};      ///< sides of the volume's voxels, in any unit, as they will be on the
-                             ///< whole: of what is more than twice as long as another, the coarser
-                             ///< grids are made accordingly (light_box::grid.voxel)
+    /// Sides of the volume's voxels, in any unit, as they will mostly be (light_box::grid.voxel).
+    /// Where some are twice as long as others, or more, coarser grids halve the short ones first.
+    glm::vec3 voxel{1};
     float spreading = 1.25f; ///< factor of the limiter; 0: plain δ-Eddington, with …
     float emptiness = 2;     ///< … 0 here: the resistance of empty space times W
     std::uint64_t most_bytes = std::uint64_t{2} << 30; ///< what all volumes together may take
