@@ -146,15 +146,19 @@ TEST(particle_layers, shadow_slabs_have_the_plain_kernels_bits) {
 // Rounding widens the chord of such a particle beyond what a row has room for; the address
 // sanitizer sees what is read and written there.
 TEST(particle_layers, almost_as_wide_as_a_row) {
-    device d;
+    cpu::device_options options;
+    options.threads = 1; // no other's memory lies in front of a layer's
+    device d(options);
     const glm::uvec3 voxels(131, 3, 131);
     kernels::particle_impulse kernel;
     kernel.shade.slices = 131;
+    kernel.shade.profile = 1; // through all rows, the lowest among them
     kernel.shade.grid.row_x = {1, 0, 0, 0};
     kernel.shade.grid.row_y = {0, 1, 0, 0};
     kernel.shade.grid.row_z = {0, 0, 1, 0};
     kernel.shade.grid.voxel = {1, 1, 1, 0x1p-22f};
     const auto sums = expect_value(d.create_volume({131, 3, 131, volume_format::int32}));
+    const auto scanned = expect_value(d.create_volume({131, 3, 131, volume_format::float32}));
     for (int i = 0; i <= 20; ++i) {
         cloud_particle p;
         p.position = {65.49001f + 0.001f * static_cast<float>(2 * i), 1.5f, 65.5f};
@@ -164,8 +168,10 @@ TEST(particle_layers, almost_as_wide_as_a_row) {
         const auto buffer = expect_value(make_buffer<device, cloud_particle>(d, one));
         ASSERT_TRUE(run(d, [&](auto& r) {
             r.accumulate(kernel, {view<device>(buffer)}, range{0, 1}, {&sums, true, {}, {}});
+            r.accumulate_scan(kernel, {view<device>(buffer)}, range{0, 1}, sums, scanned, {});
         }));
         const auto expected = plain_sums(kernel, one, voxels);
         EXPECT_EQ(std::memcmp(sums.data(), expected.data(), sums.size_bytes()), 0) << i;
+        EXPECT_GT(*std::max_element(expected.begin(), expected.end()), 0);
     }
 }
